@@ -1,0 +1,71 @@
+#pragma once
+// Errors a caller can show to a person: where, what was wrong, what was expected, what to do.
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace tessera {
+
+/// Process exit codes; a farm decides by them whether to retry.
+enum class ExitCode : int {
+    done = 0,
+    bug = 1,
+    usage = 2,
+    scene = 3,
+    output = 4,
+    memory = 5,
+    checkpoint = 75,
+};
+
+/// A place in an input file. Line and column count from 1; 0 means unknown.
+struct SourceLoc {
+    std::shared_ptr<const std::string> file;
+    int line = 0;
+    int column = 0;
+};
+
+/// "file:line:column", as far as known; empty when nothing is.
+std::string to_string(const SourceLoc& loc);
+
+/// One or more located problems (at most Problems::kMax). what() is the lines joined by '\n'.
+class Error : public std::runtime_error {
+public:
+    Error(ExitCode code, std::string message);
+    Error(ExitCode code, const SourceLoc& loc, const std::string& message);
+    ExitCode code() const noexcept { return code_; }
+
+private:
+    ExitCode code_;
+};
+
+/// Collects located problems so that a user sees many at once rather than the first.
+class Problems {
+public:
+    static constexpr int kMax = 20;
+
+    /// strict: warnings count as errors.
+    explicit Problems(bool strict = false) : strict_(strict) {}
+
+    /// Records an error; throws Error as soon as kMax are there.
+    void error(const SourceLoc& loc, const std::string& message);
+    /// Records a warning. The same text is kept once.
+    void warn(const SourceLoc& loc, const std::string& message);
+    /// A remark about what was done in the user's place (never an error). The same text is kept once.
+    void note(const SourceLoc& loc, const std::string& message);
+    /// Throws Error(code) with every error collected so far, if there is one.
+    void throw_if_any(ExitCode code = ExitCode::scene) const;
+
+    const std::vector<std::string>& errors() const noexcept { return errors_; }
+    const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+    const std::vector<std::string>& notes() const noexcept { return notes_; }
+
+private:
+    bool strict_ = false;
+    std::vector<std::string> errors_;
+    std::vector<std::string> warnings_;
+    std::vector<std::string> notes_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,295 @@
+#pragma once
+// A scene as plain data: what a loader, a test, a script or a host program fills.
+//
+// Lengths in scene units (1 = 1 m), colours linear in the working space, angles in degrees where the
+// name says _deg. Objects refer to each other by index into the vectors of SceneDesc; -1 is "none".
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "renderer/api/error.h"
+
+namespace tessera {
+
+using Float2 = std::array<float, 2>;
+using Float3 = std::array<float, 3>;
+using Double3 = std::array<double, 3>;
+
+/// Affine map, 3 rows of 4, row-major, column vectors: p' = M p.
+using Matrix34 = std::array<double, 12>;
+inline constexpr Matrix34 kIdentity34{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+
+// ---- images and materials -------------------------------------------------------------------------
+
+enum class Wrap : std::uint8_t { repeat, clamp, mirror, black };
+
+/// One image read as a texture. Equal entries are shared by index.
+struct TextureDesc {
+    std::string file;         // resolved path
+    std::string color_space;  // OCIO name; "" = by use: sRGB for colours, raw for data
+    Wrap wrap_u = Wrap::repeat;
+    Wrap wrap_v = Wrap::repeat;
+    Float2 scale{1, 1};   // uv' = uv * scale + offset
+    Float2 offset{0, 0};
+    float gain = 1;       // value' = value * gain + bias (MTL -mm)
+    float bias = 0;
+    SourceLoc loc;
+};
+
+/// Which channel a scalar input reads from a texture.
+enum class Channel : std::uint8_t { automatic, r, g, b, a, luminance };
+
+/// A colour: a constant, or the product of the constant and a texture.
+struct ColorInput {
+    Float3 value{0, 0, 0};
+    int texture = -1;
+    bool operator==(const ColorInput&) const = default;
+};
+
+/// A scalar: a constant, or the product of the constant and one channel of a texture.
+struct FloatInput {
+    float value = 0;
+    int texture = -1;
+    Channel channel = Channel::automatic;
+    bool invert = false;  // 1 - texture, before the product
+    bool operator==(const FloatInput&) const = default;
+};
+
+/// OpenPBR Surface 1.1, the parameters that exist now, with OpenPBR's names and defaults.
+struct MaterialDesc {
+    std::string name;
+    SourceLoc loc;
+    FloatInput base_weight{1};
+    ColorInput base_color{{0.8f, 0.8f, 0.8f}};
+    FloatInput base_metalness{0};
+    FloatInput specular_weight{1};
+    ColorInput specular_color{{1, 1, 1}};
+    FloatInput specular_roughness{0.3f};
+    FloatInput specular_roughness_anisotropy{0};
+    float specular_ior = 1.5f;
+    FloatInput transmission_weight{0};
+    ColorInput transmission_color{{1, 1, 1}};
+    FloatInput emission_luminance{0};  // radiance of a white emission, W/m^2/sr per channel
+    ColorInput emission_color{{1, 1, 1}};
+    FloatInput geometry_opacity{1};
+    bool geometry_thin_walled = false;
+    int geometry_normal = -1;          // tangent-space normal map (texture index), OpenGL handedness
+    float geometry_normal_scale = 1;
+    bool use_vertex_color = false;     // base_color is multiplied by the mesh's vertex colours
+};
+
+// ---- shapes ---------------------------------------------------------------------------------------
+
+/// Triangles and quads. Faces are numbered triangles first, then quads, each in file order.
+/// Index arrays hold 3 entries per triangle, then 4 per quad. An empty normal_index or uv_index means
+/// "as position_index"; empty normals or uvs mean there are none.
+struct MeshDesc {
+    std::string name;
+    SourceLoc loc;
+    std::vector<double> positions;  // x y z
+    std::vector<float> normals;     // x y z, unit length
+    std::vector<float> uvs;         // u v, v upward
+    std::vector<float> colors;      // r g b per position, linear
+    std::uint32_t triangles = 0;
+    std::uint32_t quads = 0;
+    std::vector<std::uint32_t> position_index;
+    std::vector<std::uint32_t> normal_index;
+    std::vector<std::uint32_t> uv_index;
+    std::vector<std::uint32_t> face_material;  // slot per face; empty: slot 0 for all
+    std::vector<int> materials;                // slot -> SceneDesc::materials
+    std::vector<std::uint32_t> face_object;    // per face -> object_names; empty: 0 for all
+    std::vector<std::string> object_names;     // OBJ 'o', else 'g', else the file's stem
+};
+
+struct SphereDesc {
+    std::string name;
+    SourceLoc loc;
+    Double3 center{0, 0, 0};
+    double radius = 1;
+    int material = -1;
+};
+
+struct DiscDesc {
+    std::string name;
+    SourceLoc loc;
+    Double3 center{0, 0, 0};
+    Double3 normal{0, 1, 0};
+    double radius = 1;
+    int material = -1;
+};
+
+enum class ShapeKind : std::uint8_t { mesh, sphere, disc, group };
+
+struct ShapeRef {
+    ShapeKind kind = ShapeKind::mesh;
+    int index = -1;
+};
+
+/// One shape or group placed once or many times.
+struct InstanceDesc {
+    std::string name;
+    SourceLoc loc;
+    ShapeRef of;
+    std::vector<Matrix34> transforms{kIdentity34};
+    int material = -1;  // replaces every material of the shape when set
+};
+
+/// Instances under a name, to be instanced together. Groups may nest; a cycle is an error.
+struct GroupDesc {
+    std::string name;
+    SourceLoc loc;
+    std::vector<InstanceDesc> members;
+};
+
+// ---- lights ---------------------------------------------------------------------------------------
+
+struct PointLightDesc {
+    Double3 position{0, 0, 0};
+    Float3 intensity{1, 1, 1};  // W/sr
+};
+
+struct SpotLightDesc {
+    Double3 position{0, 0, 0};
+    Double3 direction{0, -1, 0};
+    Float3 intensity{1, 1, 1};  // W/sr on the axis
+    double cone_deg = 30;       // half angle where light ends
+    double blend = 0.2;         // share of the cone over which it fades, 0 = hard edge
+};
+
+struct DistantLightDesc {
+    Double3 direction{0, -1, 0};  // the way the light travels
+    Float3 irradiance{1, 1, 1};   // W/m^2 on a surface facing the light
+    double angle_deg = 0;         // angular diameter; the sun's is 0.533
+};
+
+struct QuadLightDesc {  // emits along edges[0] x edges[1]
+    Double3 corner{0, 0, 0};
+    std::array<Double3, 2> edges{{{1, 0, 0}, {0, 0, 1}}};
+    Float3 radiance{1, 1, 1};  // W/m^2/sr
+    bool two_sided = false;
+};
+
+struct DiscLightDesc {
+    Double3 center{0, 0, 0};
+    Double3 normal{0, -1, 0};
+    double radius = 1;
+    Float3 radiance{1, 1, 1};
+    bool two_sided = false;
+};
+
+struct SphereLightDesc {
+    Double3 center{0, 0, 0};
+    double radius = 1;
+    Float3 radiance{1, 1, 1};
+};
+
+struct LightDesc {
+    std::string name;
+    SourceLoc loc;
+    bool visible = true;  // to camera rays; area lights only
+    std::variant<PointLightDesc, SpotLightDesc, DistantLightDesc, QuadLightDesc, DiscLightDesc,
+                 SphereLightDesc>
+        shape;
+};
+
+/// Light from all around. With a file: lat-long, y up, u = 0.5 looks along -z at rotate_deg 0.
+struct EnvironmentDesc {
+    SourceLoc loc;
+    std::string file;         // resolved path; "" = constant
+    std::string color_space;  // "" = linear working space
+    Float3 radiance{1, 1, 1}; // constant, or the factor on the image
+    double rotate_deg = 0;    // about +y
+    bool visible = true;      // to camera rays
+};
+
+// ---- camera, film, settings -----------------------------------------------------------------------
+
+enum class Projection : std::uint8_t { perspective, orthographic };
+enum class FovAxis : std::uint8_t { vertical, horizontal };
+
+struct CameraDesc {
+    SourceLoc loc;
+    bool automatic = true;  // frame the scene from a three-quarter view; the placement below is ignored
+    Projection projection = Projection::perspective;
+    Double3 position{0, 0, 5};
+    Double3 look_at{0, 0, 0};
+    Double3 up{0, 1, 0};
+    std::optional<Matrix34> matrix;  // camera to world (x right, y up, looks along -z); replaces the three above
+    double fov_deg = 40;
+    FovAxis fov_axis = FovAxis::vertical;
+    double ortho_height = 2;         // scene units, orthographic only
+    double aperture_radius = 0;      // thin lens, scene units; 0 = pinhole
+    double focus_distance = 0;       // 0 = distance to look_at
+    double near_clip = 0;
+};
+
+enum class PixelFilter : std::uint8_t { box, triangle, gaussian, blackman_harris };
+
+/// Pixels x0 <= x < x1, y0 <= y < y1; y downward.
+struct PixelWindow {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+    int width() const noexcept { return x1 - x0; }
+    int height() const noexcept { return y1 - y0; }
+    bool operator==(const PixelWindow&) const = default;
+};
+
+struct FilmDesc {
+    SourceLoc loc;
+    int width = 960;
+    int height = 540;
+    std::optional<PixelWindow> crop;
+    PixelFilter filter = PixelFilter::blackman_harris;
+    double filter_width_px = 3;               // full width of the support
+    std::string working_space = "lin_rec709";  // or "acescg"
+    std::vector<std::string> aovs;             // beyond beauty; empty = Z, N, P, albedo
+};
+
+enum class Integrator : std::uint8_t { path, whitted };
+
+struct RenderDesc {
+    SourceLoc loc;
+    Integrator integrator = Integrator::path;
+    int spp = 64;
+    std::uint64_t seed = 0;
+    int max_depth = 12;               // bounces in all
+    int max_diffuse_depth = 5;
+    int max_glossy_depth = 8;
+    int max_transmission_depth = 12;
+    int min_depth = 3;                // no Russian roulette before this many bounces
+    double ray_length_max = std::numeric_limits<double>::infinity();
+};
+
+struct SceneDesc {
+    std::string path;  // the file that was asked for
+    CameraDesc camera;
+    FilmDesc film;
+    RenderDesc render;
+    std::optional<EnvironmentDesc> environment;
+    std::vector<TextureDesc> textures;
+    std::vector<MaterialDesc> materials;
+    std::vector<MeshDesc> meshes;
+    std::vector<SphereDesc> spheres;
+    std::vector<DiscDesc> discs;
+    std::vector<GroupDesc> groups;
+    std::vector<InstanceDesc> instances;
+    std::vector<LightDesc> lights;
+    std::vector<std::string> files;     // every file read, for the scene hash and 'info'
+    std::vector<std::string> warnings;  // located, one line each
+    std::vector<std::string> notes;     // what was done in the user's place
+};
+
+struct LoadOptions {
+    bool strict = false;                   // warnings become errors
+    bool allow_external_assets = false;    // assets outside the scene's folders
+    std::vector<std::string> set;          // "camera.fov_deg=35", applied in order over the scene file
+};
+
+/// Reads an .obj or .toml scene. Throws Error (ExitCode::scene or usage) with file:line:column.
+SceneDesc load_scene(const std::string& path, const LoadOptions& options = {});
+
+}  // namespace tessera

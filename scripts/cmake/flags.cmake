@@ -1,0 +1,22 @@
+# Flags every target of ours carries. No -ffast-math; contraction off, so that every kernel gives the same bits.
+
+add_library(tessera_flags INTERFACE)
+target_compile_options(tessera_flags INTERFACE
+  -ffp-contract=off -fno-math-errno -fno-trapping-math
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Wold-style-cast
+  -Wunused -Woverloaded-virtual -Wdouble-promotion)
+target_compile_definitions(tessera_flags INTERFACE TESSERA_VERSION="${PROJECT_VERSION}")
+if(TESSERA_WERROR)
+  target_compile_options(tessera_flags INTERFACE -Werror)
+endif()
+if(TESSERA_MARCH)
+  target_compile_options(tessera_flags INTERFACE -march=${TESSERA_MARCH})
+  target_compile_definitions(tessera_flags INTERFACE TESSERA_MARCH="${TESSERA_MARCH}")
+endif()
+if(TESSERA_SANITIZE)
+  target_compile_options(tessera_flags INTERFACE -fsanitize=${TESSERA_SANITIZE} -fno-omit-frame-pointer -g1)
+  target_link_options(tessera_flags INTERFACE -fsanitize=${TESSERA_SANITIZE})
+  if(TESSERA_SANITIZE MATCHES "undefined")
+    target_compile_options(tessera_flags INTERFACE -fno-sanitize-recover=undefined)
+  endif()
+endif()
