@@ -36,6 +36,7 @@ struct LayeredImage {
 
 struct WriteOptions {
     bool all_float = false;
+    int threads = 0;  // for compression; 0 = as many as the process may use
 };
 
 /// What became of the values on the way to half floats.

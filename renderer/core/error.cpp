@@ -18,8 +18,8 @@ void add_once(std::vector<std::string>& lines, std::string line) {
 
 std::string to_string(const SourceLoc& loc) {
     std::string text = loc.file ? *loc.file : std::string();
-    if (loc.line > 0) text += ":" + std::to_string(loc.line);
-    if (loc.line > 0 && loc.column > 0) text += ":" + std::to_string(loc.column);
+    if (loc.line > 0) text.append(":").append(std::to_string(loc.line));
+    if (loc.line > 0 && loc.column > 0) text.append(":").append(std::to_string(loc.column));
     return text;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
-// Colour conversion through OpenColorIO. The config: $OCIO if set, else a small one made in code from OCIO's
-// built-in transforms (no files). OCIO is started at the first call that needs it, not before.
+// Colour conversion through OpenColorIO. The config: $OCIO if set, else a small one made in code
+// from OCIO's built-in transforms (no files). OCIO is started at the first call that needs it, not
+// before.
 
 #include <memory>
 #include <span>
@@ -10,8 +11,9 @@ namespace tessera {
 
 class ColorSpaces {
 public:
-    /// working_space: "lin_rec709" or "acescg" (aliases of a user's config are tried: role scene_linear,
-    /// common names). Throws Error(ExitCode::scene) when the config cannot be read or lacks the space.
+    /// working_space: "lin_rec709" or "acescg" (aliases of a user's config are tried: role
+    /// scene_linear, common names). Throws Error(ExitCode::scene) when the config cannot be read or
+    /// lacks the space.
     explicit ColorSpaces(std::string working_space);
     ~ColorSpaces();
     ColorSpaces(const ColorSpaces&) = delete;
@@ -22,11 +24,12 @@ public:
     /// Throws Error naming the space and the nearest known name.
     void to_working(std::span<float> rgb, const std::string& from) const;
 
-    /// True if `from` is sRGB texture space and the working space shares its primaries: a per-channel curve
-    /// (our LUT, equal to OCIO's result) then does, and OCIO stays asleep.
+    /// True if `from` is sRGB texture space and the working space shares its primaries: a
+    /// per-channel curve (our LUT, equal to OCIO's result) then does, and OCIO stays asleep.
     bool is_plain_srgb(const std::string& from) const;
 
-    /// Working space to a display view, in place, encoded 0..1. view "" = the config's default view.
+    /// Working space to a display view, in place, encoded 0..1. view "" = the config's default
+    /// view.
     void to_display(std::span<float> rgb, const std::string& view) const;
 
     /// Whether OCIO was started (for the statistics).

@@ -7,7 +7,8 @@
 
 namespace tessera {
 
-/// Row-major from the top, channels interleaved. Values as stored (8-bit scaled to 0..1), no colour change.
+/// Row-major from the top, channels interleaved. Values as stored (8-bit scaled to 0..1), no colour
+/// change.
 struct Image {
     int width = 0;
     int height = 0;
@@ -31,8 +32,9 @@ struct ImageLimits {
     int max_channels = 64;
 };
 
-/// Opens and checks (regular file, known format, sane size). Throws Error(ExitCode::scene) naming the file.
-/// Formats: PNG, JPEG, TIFF (and .tx), OpenEXR, Radiance HDR; told by content, not by name.
+/// Opens and checks (regular file, known format, sane size). Throws Error(ExitCode::scene) naming
+/// the file. Formats: PNG, JPEG, TIFF (and .tx), OpenEXR, Radiance HDR; told by content, not by
+/// name.
 ImageInfo image_info(const std::string& path, const ImageLimits& limits = {});
 
 /// Reads all of it. Throws Error(ExitCode::scene). A truncated or corrupt file is an error.

@@ -11,6 +11,8 @@ struct AssetPath {
     std::string path;
     std::string reason;  // "not found (searched: a/, b/)", "lies outside the scene's folders ..."
     std::string note;    // e.g. "found as 'M.MTL' (letter case differs)"
+    bool refused =
+        false;  // there is such a file, but outside the scene's folders: an error, not a warning
 };
 
 class AssetRules {
@@ -21,9 +23,9 @@ public:
     /// Adds a folder that assets may lie in (for an OBJ named on the command line, its own folder).
     void add_root(const std::string& folder);
 
-    /// name as written in a file in base_dir: '\' counts as '/', "C:\..." falls back to the file name,
-    /// letter case falls back to a case-insensitive search. Symlinks are resolved before the check.
-    /// Only regular files are found.
+    /// name as written in a file in base_dir: '\' counts as '/', "C:\..." falls back to the file
+    /// name, letter case falls back to a case-insensitive search. Symlinks are resolved before the
+    /// check. Only regular files are found.
     AssetPath find(const std::string& name, const std::string& base_dir) const;
 
 private:

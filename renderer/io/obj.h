@@ -12,11 +12,11 @@ struct ObjOptions {
     SourceLoc from;  // where the scene names this file, for errors about the file itself
 };
 
-/// Reads path into scene: appends one mesh, its materials (and a default one when needed) and textures,
-/// and every file read to scene.files. Returns the index of the mesh.
-/// Throws Error for a file that gives no face at all; faces that cannot be right are dropped with a located
-/// warning (counted past the first few of a kind).
-int load_obj(const std::string& path, const AssetRules& assets, SceneDesc& scene, Problems& problems,
-             const ObjOptions& options = {});
+/// Reads path into scene: appends one mesh, its materials (and a default one when needed) and
+/// textures, and every file read to scene.files. Returns the index of the mesh. Throws Error for a
+/// file that gives no face at all; faces that cannot be right are dropped with a located warning
+/// (counted past the first few of a kind).
+int load_obj(const std::string& path, const AssetRules& assets, SceneDesc& scene,
+             Problems& problems, const ObjOptions& options = {});
 
 }  // namespace tessera

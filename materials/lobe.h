@@ -1,0 +1,33 @@
+#pragma once
+// What every lobe agrees on. Directions are unit, point away from the surface, and live in the local frame
+// (z = shading normal) with wo.z > 0. Values include the cosine: f = bsdf * |wi.z|. Pdfs are per solid angle.
+
+#include <cstdint>
+#include <optional>
+
+#include "renderer/core/vec.h"
+
+namespace tessera {
+
+/// How a lobe counts for the depth limits and the passes.
+enum class LobeClass : std::uint8_t { diffuse, glossy, transmission };
+
+struct LobeEval {
+    Color f{0.0f};
+    float pdf = 0;
+};
+
+struct LobeSample {
+    Vec3f wi;
+    Color weight;         // f / pdf; for a delta lobe the whole ratio
+    float pdf = 0;        // 0 for a delta lobe
+    LobeClass cls = LobeClass::diffuse;
+    bool delta = false;
+    float eta = 1;        // index on wi's side over wo's side; 1 unless refracted
+    float spread = 0;     // half angle by which a ray cone grows, radians, rough
+};
+
+/// Relative luminance of linear Rec.709; near enough for choosing lobes and lights in any working space.
+constexpr float luminance(Color c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
+
+}  // namespace tessera

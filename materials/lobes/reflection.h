@@ -1,0 +1,61 @@
+#pragma once
+// Reflection off a boundary, rough (GGX) or smooth; the boundary a dielectric or a metal.
+
+#include "materials/fresnel.h"
+#include "materials/ggx.h"
+#include "materials/lobe.h"
+
+namespace tessera {
+
+struct DielectricFresnel {
+    float eta = 1.5f;
+    Color operator()(float cos_i) const { return Color(fresnel_dielectric(cos_i, eta)); }
+};
+
+struct MetalFresnel {
+    Color f0{1.0f}, f82{1.0f};
+    Color operator()(float cos_i) const { return fresnel_f82(f0, f82, cos_i); }
+};
+
+template <class Fresnel>
+struct RoughReflection {
+    static constexpr bool kDelta = false;
+    Ggx ggx;
+    Fresnel fresnel;
+    Color reflectance{1.0f};  // directional albedo, for choosing lobes
+
+    LobeEval eval(Vec3f wo, Vec3f wi) const {
+        if (wi.z <= 0.0f) return {};
+        const Vec3f sum = wo + wi;
+        const float l2 = length2(sum);
+        if (!(l2 > 0.0f)) return {};
+        const Vec3f h = sum / std::sqrt(l2);
+        const float common = ggx.d(h) / (4.0f * wo.z);
+        return {fresnel(clamp01(dot(wo, h))) * (common * ggx.g2(wo, wi)), common * ggx.g1(wo)};
+    }
+    std::optional<LobeSample> sample(Vec3f wo, Vec2f u, float) const {
+        const Vec3f h = ggx.sample_visible(wo, u);
+        const Vec3f wi = reflect(wo, h);
+        if (!(wi.z > 0.0f)) return std::nullopt;
+        const float g1 = ggx.g1(wo);
+        const float pdf = ggx.d(h) * g1 / (4.0f * wo.z);
+        if (!(pdf > 0.0f)) return std::nullopt;
+        const Color weight = fresnel(clamp01(dot(wo, h))) * (ggx.g2(wo, wi) / g1);
+        return LobeSample{wi, weight, pdf, LobeClass::glossy, false, 1.0f, 0.25f * std::fmax(ggx.ax, ggx.ay)};
+    }
+    Color albedo(Vec3f) const { return reflectance; }
+};
+
+template <class Fresnel>
+struct SmoothReflection {
+    static constexpr bool kDelta = true;
+    Fresnel fresnel;
+
+    LobeEval eval(Vec3f, Vec3f) const { return {}; }
+    std::optional<LobeSample> sample(Vec3f wo, Vec2f, float) const {
+        return LobeSample{{-wo.x, -wo.y, wo.z}, fresnel(wo.z), 0.0f, LobeClass::glossy, true, 1.0f, 0.0f};
+    }
+    Color albedo(Vec3f wo) const { return fresnel(wo.z); }
+};
+
+}  // namespace tessera

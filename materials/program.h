@@ -1,0 +1,65 @@
+#pragma once
+// A material compiled once: constants folded, what cannot matter dropped, facts known. Run at every hit.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "materials/surface/openpbr.h"
+#include "renderer/api/scene_desc.h"
+#include "renderer/image/texture.h"
+
+namespace tessera {
+
+/// What a material can do; decides which kernel and which data a scene needs.
+struct ProgramFacts {
+    bool cutout = false;        // opacity can be below 1
+    bool opacity_textured = false;
+    bool emissive = false;
+    bool specular = false;      // any lobe other than Lambert's
+    bool transmission = false;
+    bool textured = false;      // reads an image while shading
+    bool uv = false;            // reads texture coordinates
+    bool tangent = false;       // reads dpdu
+    bool vertex_color = false;
+};
+
+/// What a program may ask of the point it shades.
+struct ShadeInput {
+    Vec2f uv;
+    float uv_width = 0;        // footprint in uv units
+    Color vertex_color{1.0f};
+};
+
+class ShaderProgram {
+public:
+    /// desc's texture indices are those of the TextureStore (see remapped).
+    explicit ShaderProgram(const MaterialDesc& desc);
+
+    const ProgramFacts& facts() const noexcept { return facts_; }
+
+    /// The surface's parameters at a point. store may be null if nothing is textured.
+    SurfaceParams surface(const ShadeInput& in, const TextureStore* store) const noexcept;
+    /// Radiance leaving the surface by itself.
+    Color emission(const ShadeInput& in, const TextureStore* store) const noexcept;
+    /// Mean emission over the texture, for choosing lights.
+    Color mean_emission(const TextureStore* store) const noexcept;
+    /// 1: light stops here.
+    float opacity(Vec2f uv, const TextureStore* store) const noexcept;
+    /// Normal in the tangent frame from the normal map; none if there is no map.
+    std::optional<Vec3f> normal(const ShadeInput& in, const TextureStore* store) const noexcept;
+
+private:
+    MaterialDesc m_;
+    SurfaceParams constant_;  // what does not vary
+    ProgramFacts facts_;
+};
+
+/// The description with its texture indices taken through `to` (-1: not loaded because nothing reads it).
+MaterialDesc remapped(MaterialDesc desc, std::span<const int> to);
+
+/// Which textures a material reads, and as what.
+void collect_textures(const MaterialDesc& desc, std::vector<TextureUse>& use, std::vector<bool>& read);
+
+}  // namespace tessera

@@ -1,0 +1,108 @@
+#pragma once
+// Describe -> build -> render -> write. See docs/architecture.md.
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "renderer/api/image.h"
+#include "renderer/api/scene_desc.h"
+
+namespace tessera {
+
+/// Why a sample, ray or contribution was dropped.
+enum class InvalidCause : int {
+    camera_ray,          // the camera made a ray with a non-finite component
+    bounce_ray,          // a continued path did
+    shadow_ray,
+    hit,                 // a hit with non-finite position or normal
+    radiance,            // a non-finite or negative sample value
+    count,
+};
+inline constexpr int kInvalidCauses = static_cast<int>(InvalidCause::count);
+
+/// Names as in the statistics file.
+const char* to_string(InvalidCause cause);
+
+struct RayCounts {
+    std::uint64_t camera = 0;
+    std::uint64_t bounce = 0;
+    std::uint64_t shadow = 0;
+    std::uint64_t total() const noexcept { return camera + bounce + shadow; }
+};
+
+/// One thing that the scene did not need.
+struct LeftOut {
+    std::string what;   // "texture system"
+    std::string why;    // "no image is read"
+};
+
+/// What a run did and cost. Times are wall seconds.
+struct Statistics {
+    std::string version, scene, kernel, isa, integrator;
+    int threads = 0, tile = 0, spp = 0, width = 0, height = 0;
+    std::uint64_t seed = 0;
+    double load_s = 0, build_s = 0, render_s = 0, write_s = 0;
+    RayCounts rays;
+    std::uint64_t samples = 0;  // camera samples taken
+    std::uint64_t triangles_stored = 0, triangles_instanced = 0, instances = 0, lights = 0;
+    std::uint64_t memory_peak = 0;  // bytes, resident
+    std::uint64_t memory_geometry = 0, memory_bvh = 0, memory_textures = 0, memory_film = 0, memory_lights = 0;
+    std::array<std::uint64_t, kInvalidCauses> invalid{};
+    std::string first_invalid;  // "radiance at pixel 312,80 sample 17"
+    std::uint64_t half_clamped = 0, half_non_finite = 0;
+    std::vector<LeftOut> left_out;
+    std::vector<std::string> warnings, notes;
+    bool complete = true;
+};
+
+/// The statistics file (docs/stats.schema.json), as JSON text.
+std::string to_json(const Statistics& stats);
+
+/// Ready to trace; immutable, safe to share between threads.
+class Scene;
+using ScenePtr = std::shared_ptr<const Scene>;
+
+struct BuildOptions {
+    int threads = 0;      // as RenderSettings
+    std::string kernel;   // "" = the smallest that covers the scene; "basic", "surface", "full"
+    std::string isa;      // Embree's instruction set, "" = the best of this machine
+    bool strict = false;
+};
+
+/// Throws Error(scene) for what cannot be rendered, Error(memory) when memory runs out.
+/// The description's large arrays are moved from.
+ScenePtr build_scene(SceneDesc&& desc, const BuildOptions& options = {});
+
+struct Progress {
+    double fraction = 0;   // 0..1
+    double elapsed_s = 0;
+    double eta_s = 0;
+    int spp = 0;           // of the pass under way
+};
+
+struct RenderSettings {
+    int threads = 0;    // 0: what affinity, cgroup and Slurm allow; negative: all but that many
+    int tile = 32;      // pixels, a multiple of 4
+    double time_s = 0;  // > 0: passes until so many seconds are used; spp is then the upper bound
+    const std::atomic<bool>* cancel = nullptr;
+    std::function<void(const Progress&)> progress;  // called from one thread at a time
+};
+
+struct RenderResult {
+    LayeredImage image;
+    Statistics stats;
+    bool complete = true;  // false: cancelled; the picture holds what there was
+};
+
+/// Never throws from the loop; Error(memory) if the film does not fit.
+RenderResult render(const Scene& scene, const RenderSettings& settings = {});
+
+/// What `tessera info` shows: the statistics of a scene without a render.
+Statistics describe(const Scene& scene);
+
+}  // namespace tessera

@@ -1,0 +1,70 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "renderer/cli/commands.h"
+#include "renderer/cli/scene_options.h"
+#include "renderer/core/log.h"
+#include "renderer/integrator/replay.h"
+
+namespace tessera {
+namespace {
+
+double median(std::vector<double> v) {
+    std::sort(v.begin(), v.end());
+    return v.size() % 2 ? v[v.size() / 2] : 0.5 * (v[v.size() / 2 - 1] + v[v.size() / 2]);
+}
+
+struct BenchOptions {
+    SceneOptions scene;
+    bool replay = false;
+    int repeats = 5;
+};
+
+int run_bench(const BenchOptions& o) {
+    double load_s = 0;
+    const ScenePtr scene = build_scene(o.scene.load(load_s), o.scene.build_options());
+    RenderSettings settings;
+    settings.threads = o.scene.threads;
+    settings.tile = o.scene.tile;
+    std::vector<double> render_s, replay_s, ratio;
+    Statistics stats;
+    render(*scene, settings);  // warm
+    for (int i = 0; i < o.repeats; ++i) {
+        const RenderResult r = render(*scene, settings);
+        stats = r.stats;
+        render_s.push_back(r.stats.render_s);
+        if (!o.replay) continue;
+        const ReplayTimes t = time_replay(*scene, settings);
+        replay_s.push_back(t.seconds);
+        ratio.push_back(r.stats.render_s / t.seconds);
+    }
+    const double s = median(render_s);
+    fmt::print("scene      {} at {}x{}, {} spp, {} threads, tile {}, kernel {}\n", stats.scene, stats.width, stats.height, stats.spp, stats.threads, stats.tile, stats.kernel);
+    fmt::print("render     {:.3f} s (min {:.3f}, max {:.3f}, {} runs)\n", s, *std::min_element(render_s.begin(), render_s.end()), *std::max_element(render_s.begin(), render_s.end()), o.repeats);
+    fmt::print("samples/s  {:.3f} M\n", static_cast<double>(stats.samples) / s * 1e-6);
+    fmt::print("rays/s     {:.3f} M (per sample: camera {:.2f}, bounce {:.2f}, shadow {:.2f})\n", static_cast<double>(stats.rays.total()) / s * 1e-6,
+               static_cast<double>(stats.rays.camera) / static_cast<double>(stats.samples), static_cast<double>(stats.rays.bounce) / static_cast<double>(stats.samples),
+               static_cast<double>(stats.rays.shadow) / static_cast<double>(stats.samples));
+    if (o.replay) {
+        fmt::print("embree     {:.3f} s for the same rays\n", median(replay_s));
+        fmt::print("traversal ratio {:.3f} (min {:.3f}, max {:.3f})\n", median(ratio), *std::min_element(ratio.begin(), ratio.end()), *std::max_element(ratio.begin(), ratio.end()));
+    }
+    return 0;
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, CommandLine& line) {
+    CLI::App* sub = app.add_subcommand("bench", "Time the rendering of a scene, loading and writing left out");
+    auto o = std::make_shared<BenchOptions>();
+    o->scene.add_to(*sub);
+    sub->add_flag("--replay", o->replay, "Also time Embree alone on the very same rays: the traversal ratio");
+    sub->add_option("--repeats", o->repeats, "Timed runs")->check(CLI::Range(1, 1000));
+    sub->callback([o, &line] { line.run = [o] { return run_bench(*o); }; });
+}
+
+}  // namespace tessera

@@ -1,0 +1,61 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "renderer/cli/commands.h"
+#include "renderer/cli/scene_options.h"
+#include "renderer/cli/progress.h"
+#include "renderer/scene/scene.h"
+
+namespace tessera {
+namespace {
+
+std::string mib(std::uint64_t bytes) { return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1 << 20)); }
+
+void print(const Scene& scene) {
+    const Statistics s = describe(scene);
+    const Vec3d size = scene.bounds_max() - scene.bounds_min();
+    fmt::print("{}\n", s.scene);
+    fmt::print("  picture    {} x {}, {} samples per pixel, integrator {}\n", s.width, s.height, s.spp, s.integrator);
+    fmt::print("  geometry   {} triangles stored, {} instanced, {} instances\n", s.triangles_stored, s.triangles_instanced, s.instances);
+    fmt::print("  size       {:.6g} x {:.6g} x {:.6g}", size.x, size.y, size.z);
+    const Vec3d o = scene.origin();
+    if (!(o == Vec3d{})) fmt::print(", traced about ({:.17g}, {:.17g}, {:.17g})", o.x, o.y, o.z);
+    fmt::print("\n  lights     {}\n", s.lights);
+    fmt::print("  memory     geometry {}, BVH {}, textures {}, lights {}\n", mib(s.memory_geometry), mib(s.memory_bvh), mib(s.memory_textures), mib(s.memory_lights));
+    fmt::print("  kernel     {} (Embree {}, {})\n", s.kernel, Accel::version(), s.isa);
+    fmt::print("  hash       {}\n", scene.hash());
+    fmt::print("left out\n");
+    for (const LeftOut& l : s.left_out) fmt::print("  {:<20} {}\n", l.what, l.why);
+    for (const std::string& n : s.notes) fmt::print("note: {}\n", n);
+    for (const std::string& w : s.warnings) fmt::print("warning: {}\n", w);
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, CommandLine& line) {
+    CLI::App* sub = app.add_subcommand("info", "Print what is in a scene, and what of the renderer it does not need");
+    auto options = std::make_shared<SceneOptions>();
+    auto json = std::make_shared<bool>(false);
+    options->add_to(*sub);
+    sub->add_flag("--json", *json, "As JSON, in the form of the statistics file");
+    sub->callback([=, &line] {
+        line.run = [=] {
+            double load_s = 0;
+            const ScenePtr scene = build_scene(options->load(load_s), options->build_options());
+            if (*json) {
+                Statistics s = describe(*scene);
+                s.load_s = load_s;
+                s.memory_peak = peak_memory();
+                std::fputs(to_json(s).c_str(), stdout);
+            } else {
+                print(*scene);
+            }
+            return 0;
+        };
+    });
+}
+
+}  // namespace tessera

@@ -1,0 +1,71 @@
+// tessera: the command line. Parses, runs one command, turns errors into messages and exit codes.
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <new>
+
+#include "renderer/api/error.h"
+#include "renderer/cli/commands.h"
+#include "renderer/core/parallel.h"
+
+namespace {
+
+void check_cpu() {
+#ifdef TESSERA_MARCH
+    __builtin_cpu_init();
+    constexpr std::string_view march = TESSERA_MARCH;
+    if ((march == "x86-64-v3" || march == "x86-64-v4") && !(__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2"))) {
+        std::fputs("tessera: this build needs a CPU with AVX2 (" TESSERA_MARCH
+                   "); configure with -DTESSERA_MARCH=x86-64 for older ones\n", stderr);
+        std::exit(static_cast<int>(tessera::ExitCode::usage));
+    }
+#endif
+}
+
+int report(const tessera::Error& e) {
+    std::fprintf(stderr, "%s\n", e.what());
+    return static_cast<int>(e.code());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    check_cpu();
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);  // a size limit becomes a failed write, with its message
+    tessera::flush_denormals();
+
+    CLI::App app{"Tessera: an offline path tracer. OBJ scenes in, layered EXR out."};
+    app.name("tessera");
+    app.require_subcommand(1);
+    app.set_version_flag("--version", std::string("tessera ") + TESSERA_VERSION);
+    app.footer("Examples:\n"
+               "  tessera render bunny.obj -o bunny.exr --preview bunny.png\n"
+               "  tessera render scene.toml -o out.exr --spp 256 --set camera.fov_deg=35\n"
+               "  tessera info scene.toml\n"
+               "Exit codes: 0 done, 1 a bug of ours, 2 usage, 3 scene or asset, 4 output, 5 memory,\n"
+               "  75 stopped with what there was written, 130/143 stopped with nothing saved");
+    tessera::CommandLine line;
+    for (int i = 0; i < argc; ++i) line.text += (i ? " " : "") + std::string(argv[i]);
+    tessera::add_render(app, line);
+    tessera::add_info(app, line);
+    tessera::add_bench(app, line);
+    tessera::add_version(app, line);
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        const int code = app.exit(e);
+        return code == 0 ? 0 : static_cast<int>(tessera::ExitCode::usage);
+    }
+    try {
+        return line.run ? line.run() : 0;
+    } catch (const tessera::Error& e) {
+        return report(e);
+    } catch (const std::bad_alloc&) {
+        return report({tessera::ExitCode::memory, "tessera: out of memory"});
+    } catch (const std::exception& e) {
+        return report({tessera::ExitCode::bug, std::string("tessera: internal error: ") + e.what()});
+    }
+}

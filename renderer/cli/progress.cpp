@@ -1,0 +1,71 @@
+#include "renderer/cli/progress.h"
+
+#include <sys/ioctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+namespace tessera {
+namespace {
+
+constexpr double kLineSeconds = 10, kLineShare = 0.05, kBarSeconds = 0.1;
+
+int terminal_width() {
+    winsize size{};
+    return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+std::string clock_text(double s) {
+    const int t = static_cast<int>(std::min(s, 3.6e6) + 0.5);
+    return t >= 3600 ? fmt::format("{}:{:02}:{:02}", t / 3600, t / 60 % 60, t % 60) : fmt::format("{}:{:02}", t / 60, t % 60);
+}
+
+}  // namespace
+
+ProgressPrinter::ProgressPrinter(bool enabled) : enabled_(enabled), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+void ProgressPrinter::show(const Progress& p) {
+    if (!enabled_) return;
+    const bool end = p.fraction >= 1.0;
+    if (terminal_) {
+        if (!end && p.elapsed_s - last_time_ < kBarSeconds) return;
+        bar(p);
+    } else {
+        if (!end && p.elapsed_s - last_time_ < kLineSeconds && p.fraction - last_fraction_ < kLineShare) return;
+        if (!end && p.elapsed_s - last_time_ < 1.0) return;
+        line(p);
+    }
+    last_time_ = p.elapsed_s;
+    last_fraction_ = p.fraction;
+}
+
+void ProgressPrinter::bar(const Progress& p) {
+    const std::string text = fmt::format(" {:3.0f}% {} spp  {} left {}", std::floor(p.fraction * 100), p.spp, clock_text(p.elapsed_s), clock_text(p.eta_s));
+    const int room = std::clamp(terminal_width() - static_cast<int>(text.size()) - 3, 0, 60);
+    const int filled = static_cast<int>(p.fraction * room);
+    fmt::print(stderr, "\r[{}{}]{}\033[K", std::string(filled, '#'), std::string(room - filled, '.'), text);
+    std::fflush(stderr);
+    open_ = true;
+}
+
+void ProgressPrinter::line(const Progress& p) {
+    fmt::print(stderr, "progress {:.1f}% spp={} elapsed={:.0f} eta={:.0f} rss={}M\n", p.fraction * 100, p.spp, p.elapsed_s, p.eta_s, peak_memory() >> 20);
+    std::fflush(stderr);
+}
+
+void ProgressPrinter::finish() {
+    if (open_) fmt::print(stderr, "\n");
+    open_ = false;
+}
+
+std::uint64_t peak_memory() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::uint64_t>(usage.ru_maxrss) << 10;
+}
+
+}  // namespace tessera

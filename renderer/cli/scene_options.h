@@ -1,0 +1,33 @@
+#pragma once
+// Options that every command on a scene takes.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "renderer/api/render.h"
+
+namespace CLI {
+class App;
+}
+
+namespace tessera {
+
+struct SceneOptions {
+    std::string scene;
+    std::vector<std::string> set;
+    std::vector<std::string> aovs;
+    std::string res, crop, kernel, isa;
+    std::optional<int> spp;
+    std::optional<std::uint64_t> seed;
+    int threads = 0;
+    int tile = 32;
+    bool strict = false, external = false;
+
+    void add_to(CLI::App& app);
+    /// Reads the scene and lays the options over it. Returns seconds in load_s.
+    SceneDesc load(double& load_s) const;
+    BuildOptions build_options() const;
+};
+
+}  // namespace tessera

@@ -1,0 +1,67 @@
+#pragma once
+// Piecewise-constant distributions over tables. Built in double; sums are exact enough for any table we meet.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "renderer/core/vec.h"
+
+namespace tessera {
+
+/// Picks an index with probability proportional to its weight, in constant time.
+/// Walker 1977, built as by Vose, "A Linear Algorithm for Generating Random Numbers...", 1991.
+class AliasTable {
+public:
+    struct Pick {
+        std::size_t index;
+        float probability;
+        float remainder;  // u rescaled to [0,1) for further use
+    };
+
+    AliasTable() = default;
+    /// Weights: finite and >= 0 (others count as 0). All zero: uniform.
+    explicit AliasTable(std::span<const double> weights);
+
+    Pick sample(float u) const noexcept;
+    float probability(std::size_t index) const noexcept { return cells_[index].probability; }
+    std::size_t size() const noexcept { return cells_.size(); }
+    std::size_t bytes() const noexcept { return cells_.size() * sizeof(Cell); }
+
+private:
+    struct Cell {
+        float keep = 1;  // share of the cell that stays with its own index
+        std::uint32_t alias = 0;
+        float probability = 0;
+    };
+    std::vector<Cell> cells_;
+};
+
+/// A density over the unit square from a width x height table of weights, sampled by inversion (marginal in y, then
+/// conditional in x), so that stratified input stays stratified.
+class Distribution2D {
+public:
+    struct Sample {
+        Vec2f uv;
+        float pdf;  // per unit area of the square
+    };
+
+    Distribution2D() = default;
+    Distribution2D(int width, int height, std::span<const double> weights);
+
+    Sample sample(Vec2f u) const noexcept;
+    float pdf(Vec2f uv) const noexcept;
+    /// Mean weight; 0 means that nothing can be sampled.
+    double mean() const noexcept { return mean_; }
+    bool empty() const noexcept { return rows_.empty(); }
+    std::size_t bytes() const noexcept { return (rows_.size() + cells_.size()) * sizeof(float); }
+
+private:
+    int width_ = 0, height_ = 0;
+    double mean_ = 0;
+    std::vector<float> rows_;   // height_ + 1 cumulative
+    std::vector<float> cells_;  // per row width_ + 1 cumulative
+};
+
+}  // namespace tessera

@@ -1,0 +1,50 @@
+#pragma once
+// Rays that leave a surface without hitting it: the origin is moved by a bound on the rounding error.
+// Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., section 6.8; the bounds there cover the
+// position. kSafety widens them for the rounding inside Embree's robust triangle test and its instance transform
+// (measured by the self-hit test in tests/stats).
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "renderer/core/vec.h"
+
+namespace tessera {
+
+inline constexpr float kEpsilonHalf = std::numeric_limits<float>::epsilon() * 0.5f;
+
+/// Bound on the relative error of n rounded operations.
+constexpr float gamma_bound(int n) {
+    const float e = static_cast<float>(n) * kEpsilonHalf;
+    return e / (1.0f - e);
+}
+
+inline constexpr float kSafety = 2.0f;
+
+/// Next float away from (up) or toward negative infinity. Finite input, not NaN.
+inline float next_up(float v) {
+    if (v == 0.0f) return std::numeric_limits<float>::min();  // denormals are flushed
+    const auto bits = std::bit_cast<std::uint32_t>(v);
+    return std::bit_cast<float>(v > 0.0f ? bits + 1 : bits - 1);
+}
+inline float next_down(float v) { return -next_up(-v); }
+
+/// p moved off the surface along +-ng to the side w points to. error: bound per axis.
+inline Vec3f offset_origin(Vec3f p, Vec3f error, Vec3f ng, Vec3f w) {
+    const float d = dot(abs(ng), error) * kSafety;
+    const Vec3f offset = dot(w, ng) < 0.0f ? ng * -d : ng * d;
+    const Vec3f q = p + offset;
+    const auto away = [](float value, float o) { return o > 0.0f ? next_up(value) : (o < 0.0f ? next_down(value) : value); };
+    return {away(q.x, offset.x), away(q.y, offset.y), away(q.z, offset.z)};
+}
+
+/// What Debian's Embree accepts without aborting: finite, and below its 1.844e18 limit with room to spare.
+inline bool traceable(Vec3f o, Vec3f d) {
+    constexpr float kLimit = 1e18f;
+    const float m = std::fmax(max_component(abs(o)), max_component(abs(d)));
+    return is_finite(o) && is_finite(d) && m <= kLimit && length2(d) > 0.0f;
+}
+
+}  // namespace tessera

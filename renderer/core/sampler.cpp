@@ -1,0 +1,63 @@
+#include "renderer/core/sampler.h"
+
+namespace tessera {
+namespace {
+
+inline std::uint32_t reverse_bits(std::uint32_t x) {
+    x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
+    x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
+    x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
+    x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
+    return (x >> 16) | (x << 16);
+}
+
+// Permutes bits upward only: each bit is flipped depending on the lower ones. On reversed numbers that is
+// Owen's nested scrambling. Vegdahl 2021.
+inline std::uint32_t laine_karras(std::uint32_t x, std::uint32_t seed) {
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= (seed >> 16) | 1u;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return x;
+}
+
+// Sobol's second dimension, bit-reversed: its direction numbers are the rows of Pascal's triangle mod 2, so that
+// the product is the polynomial P(x + 1), by halves: (x + 1)^(2^k) = x^(2^k) + 1.
+inline std::uint32_t sobol_1_reversed(std::uint32_t p) {
+    p ^= (p >> 16) & 0x0000ffffu;
+    p ^= (p >> 8) & 0x00ff00ffu;
+    p ^= (p >> 4) & 0x0f0f0f0fu;
+    p ^= (p >> 2) & 0x33333333u;
+    p ^= (p >> 1) & 0x55555555u;
+    return p;
+}
+
+inline float to_unit(std::uint32_t bits) {
+    return static_cast<float>(static_cast<std::int32_t>(bits >> 8)) * 0x1p-24f;
+}
+
+inline void point(std::uint32_t seed, std::uint32_t reversed_index, std::uint32_t pair, float& x, float& y) {
+    const std::uint32_t s0 = hash_combine(seed, pair);
+    const std::uint32_t s1 = hash_u32(s0 + 0x9e3779b9u);
+    const std::uint32_t s2 = hash_u32(s0 + 0x3c6ef372u);
+    const std::uint32_t shuffled = reverse_bits(laine_karras(reversed_index, s0));
+    x = to_unit(reverse_bits(laine_karras(shuffled, s1)));
+    y = to_unit(reverse_bits(laine_karras(sobol_1_reversed(shuffled), s2)));
+}
+
+}  // namespace
+
+void sample_pairs(const std::uint32_t (&pixel_seeds)[kLanes], std::uint32_t index, std::uint32_t pair,
+                  SamplePairs& out) noexcept {
+    const std::uint32_t reversed = reverse_bits(index);
+    for (int lane = 0; lane < kLanes; ++lane) point(pixel_seeds[lane], reversed, pair, out.x[lane], out.y[lane]);
+}
+
+Vec2f sample_pair(std::uint32_t pixel_seed, std::uint32_t index, std::uint32_t pair) noexcept {
+    Vec2f p;
+    point(pixel_seed, reverse_bits(index), pair, p.x, p.y);
+    return p;
+}
+
+}  // namespace tessera

@@ -1,0 +1,61 @@
+#include <nlohmann/json.hpp>
+
+#include "renderer/api/render.h"
+
+namespace tessera {
+
+const char* to_string(InvalidCause cause) {
+    switch (cause) {
+        case InvalidCause::camera_ray: return "camera_ray";
+        case InvalidCause::bounce_ray: return "bounce_ray";
+        case InvalidCause::shadow_ray: return "shadow_ray";
+        case InvalidCause::hit: return "hit";
+        case InvalidCause::radiance: return "radiance";
+        case InvalidCause::count: break;
+    }
+    return "unknown";
+}
+
+std::string to_json(const Statistics& s) {
+    using nlohmann::ordered_json;
+    const auto rate = [](std::uint64_t n, double seconds) { return seconds > 0 ? static_cast<double>(n) / seconds : 0.0; };
+    ordered_json invalid = ordered_json::object();
+    std::uint64_t invalid_total = 0;
+    for (int i = 0; i < kInvalidCauses; ++i) {
+        invalid[to_string(static_cast<InvalidCause>(i))] = s.invalid[i];
+        invalid_total += s.invalid[i];
+    }
+    invalid["total"] = invalid_total;
+    invalid["first"] = s.first_invalid;
+    ordered_json left_out = ordered_json::array();
+    for (const LeftOut& l : s.left_out) left_out.push_back({{"what", l.what}, {"why", l.why}});
+    const ordered_json j = {
+        {"format", 1},
+        {"version", s.version},
+        {"scene", s.scene},
+        {"complete", s.complete},
+        {"integrator", s.integrator},
+        {"kernel", s.kernel},
+        {"embree_isa", s.isa},
+        {"resolution", {s.width, s.height}},
+        {"spp", s.spp},
+        {"seed", s.seed},
+        {"threads", s.threads},
+        {"tile", s.tile},
+        {"seconds", {{"load", s.load_s}, {"build", s.build_s}, {"render", s.render_s}, {"write", s.write_s}}},
+        {"samples", s.samples},
+        {"samples_per_second", rate(s.samples, s.render_s)},
+        {"rays", {{"camera", s.rays.camera}, {"bounce", s.rays.bounce}, {"shadow", s.rays.shadow}, {"total", s.rays.total()}}},
+        {"rays_per_second", rate(s.rays.total(), s.render_s)},
+        {"geometry", {{"triangles_stored", s.triangles_stored}, {"triangles_instanced", s.triangles_instanced}, {"instances", s.instances}, {"lights", s.lights}}},
+        {"memory_bytes", {{"peak", s.memory_peak}, {"geometry", s.memory_geometry}, {"bvh", s.memory_bvh}, {"textures", s.memory_textures}, {"lights", s.memory_lights}, {"film", s.memory_film}}},
+        {"invalid", invalid},
+        {"half", {{"clamped", s.half_clamped}, {"non_finite", s.half_non_finite}}},
+        {"left_out", left_out},
+        {"warnings", s.warnings},
+        {"notes", s.notes},
+    };
+    return j.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace tessera

@@ -1,0 +1,144 @@
+#include "renderer/geometry/interpolate.h"
+
+#include <cmath>
+
+#include "renderer/core/robust.h"
+
+namespace tessera {
+namespace {
+
+struct Corners {
+    std::size_t a, b, c;  // entries of the index arrays
+    float wa, wb, wc;
+};
+
+Corners corners_of(const Mesh& mesh, std::uint32_t face, float u, float v) {
+    const FaceWeights w = face_weights(face >= mesh.triangles, u, v);
+    const std::size_t first = mesh.corner(face);
+    return {first + w.a, first + w.b, first + w.c, w.wa, w.wb, w.wc};
+}
+
+// Moves a point's data from the shape's space to the scene's, with the error that the map adds (PBRT 4e, eq. 6.29 ff).
+void to_world(const Affinef& m, SurfacePoint& s) {
+    const Vec3f p = s.p;
+    s.p = m.point(p);
+    const Vec3f magnitude = abs(m.x) * std::fabs(p.x) + abs(m.y) * std::fabs(p.y) + abs(m.z) * std::fabs(p.z) + abs(m.p);
+    const Vec3f carried = abs(m.x) * s.p_error.x + abs(m.y) * s.p_error.y + abs(m.z) * s.p_error.z;
+    // Embree takes the ray into the shape's space, which costs about as much again as taking the point out of it.
+    s.p_error = carried * (1.0f + gamma_bound(3)) + magnitude * (2.0f * gamma_bound(4));
+    s.ng = normalize(m.normal(s.ng));
+    const Vec3f n = m.normal(s.ns);
+    s.ns = normalize(n);
+    s.dpdu = m.vector(s.dpdu);
+    const float scale = std::cbrt(std::fabs(m.determinant()));
+    s.uv_per_length = scale > 0.0f ? s.uv_per_length / scale : 0.0f;
+}
+
+void mesh_point(const Mesh& mesh, std::uint32_t face, const Hit& hit, SurfaceNeeds needs, SurfacePoint& s) {
+    const Corners k = corners_of(mesh, face, hit.u, hit.v);
+    const std::uint32_t ia = mesh.position_index[k.a], ib = mesh.position_index[k.b], ic = mesh.position_index[k.c];
+    const Vec3f a = mesh.positions[ia], b = mesh.positions[ib], c = mesh.positions[ic];
+    s.p = a * k.wa + b * k.wb + c * k.wc;
+    // The vertices' own size bounds both the rounding here (PBRT 4e, eq. 6.24) and Embree's, whose products are
+    // of differences of vertices.
+    s.p_error = (abs(a) + abs(b) + abs(c)) * gamma_bound(7);
+    const Vec3f normal = cross(b - a, c - a);
+    const float area2 = length(normal);
+    s.ng = normal / area2;
+    s.ns = s.ng;
+    if (!mesh.normals.empty()) {
+        const auto& index = mesh.normal_index.empty() ? mesh.position_index : mesh.normal_index;
+        const Vec3f n = mesh.normals[index[k.a]] * k.wa + mesh.normals[index[k.b]] * k.wb + mesh.normals[index[k.c]] * k.wc;
+        const float l2 = length2(n);
+        if (l2 > 1e-12f) s.ns = n / std::sqrt(l2);
+    }
+    if (needs.uv && !mesh.uvs.empty()) {
+        const auto& index = mesh.uv_index.empty() ? mesh.position_index : mesh.uv_index;
+        const Vec2f ta = mesh.uvs[index[k.a]], tb = mesh.uvs[index[k.b]], tc = mesh.uvs[index[k.c]];
+        s.uv = ta * k.wa + tb * k.wb + tc * k.wc;
+        const Vec2f e1 = tb - ta, e2 = tc - ta;
+        const float uv_area2 = e1.x * e2.y - e2.x * e1.y;
+        s.uv_per_length = std::sqrt(std::fabs(uv_area2) / area2);
+        if (uv_area2 != 0.0f) s.dpdu = ((b - a) * e2.y - (c - a) * e1.y) / uv_area2;
+    }
+    if (needs.colors && !mesh.colors.empty()) {
+        s.vertex_color = mesh.colors[ia] * k.wa + mesh.colors[ib] * k.wb + mesh.colors[ic] * k.wc;
+    }
+}
+
+// Embree solves the sphere in float; its t only says which of the two roots was meant.
+void sphere_point(const Sphere& sphere, const Ray& local, float t, SurfacePoint& s) {
+    const Vec3d d(local.d), oc = Vec3d(local.o) - Vec3d(sphere.center);
+    const double r = sphere.radius, a = length2(d), b = dot(oc, d);
+    const Vec3d closest = oc - d * (b / a);  // nearest point of the line to the centre: no cancellation
+    const double reach = std::sqrt(std::max(0.0, (r * r - length2(closest)) / a));
+    const double middle = -b / a;
+    const double root = static_cast<double>(t) < middle ? middle - reach : middle + reach;
+    Vec3d n = oc + d * root;
+    n = n * (1.0 / length(n));
+    s.ng = s.ns = Vec3f(n);
+    s.p = Vec3f(Vec3d(sphere.center) + n * r);
+    // Embree's own float solution is good to a few roundings of centre and radius.
+    s.p_error = (abs(sphere.center) + Vec3f(sphere.radius)) * gamma_bound(16);
+    const double turn = std::atan2(n.x, n.z) / (2.0 * 3.14159265358979323846);
+    s.uv = {static_cast<float>(turn < 0 ? turn + 1 : turn), static_cast<float>(std::acos(std::fmax(-1.0, std::fmin(1.0, -n.y))) / 3.14159265358979323846)};
+    s.dpdu = Vec3f(Vec3d{n.z, 0, -n.x} * (2.0 * 3.14159265358979323846 * r));
+    s.uv_per_length = 1.0f / (kPi * sphere.radius);
+}
+
+void disc_point(const Disc& disc, const Ray& local, SurfacePoint& s) {
+    const Vec3d n(disc.normal), d(local.d), co = Vec3d(disc.center) - Vec3d(local.o);
+    const Vec3d p = Vec3d(local.o) + d * (dot(co, n) / dot(d, n));
+    s.p = Vec3f(p);
+    s.ng = s.ns = disc.normal;
+    s.p_error = (abs(disc.center) + Vec3f(disc.radius)) * gamma_bound(8);
+    const Frame frame(disc.normal);
+    const Vec3f q = Vec3f(p - Vec3d(disc.center));
+    s.uv = {0.5f + 0.5f * dot(q, frame.s) / disc.radius, 0.5f + 0.5f * dot(q, frame.t) / disc.radius};
+    s.dpdu = frame.s * (2.0f * disc.radius);
+    s.uv_per_length = 0.5f / disc.radius;
+}
+
+// The ray in the space of an instanced shape, in double.
+Ray to_local(const Affinef& m, const Ray& ray) {
+    const Affined back = inverse(Affined(m));
+    return {Vec3f(back.point(Vec3d(ray.o))), Vec3f(back.vector(Vec3d(ray.d))), ray.t_max, ray.mask};
+}
+
+}  // namespace
+
+SurfacePoint surface_point(const Geometry& geometry, const HitTarget& target, const Hit& hit, const Ray& ray,
+                           SurfaceNeeds needs) noexcept {
+    SurfacePoint s;
+    const Placement& placed = geometry.placements[target.placement];
+    s.placement = target.placement;
+    s.light = placed.light;
+    if (placed.kind == PlacedKind::mesh) {
+        const Mesh& mesh = geometry.meshes[placed.shape];
+        s.face = mesh.parts[target.part].first_face + hit.prim;
+        s.material = mesh.materials[mesh.material_slot(s.face)];
+        mesh_point(mesh, s.face, hit, needs, s);
+    } else {
+        const Ray local = placed.instanced ? to_local(placed.to_world, ray) : ray;
+        if (placed.kind == PlacedKind::sphere) {
+            sphere_point(geometry.spheres[placed.shape], local, hit.t, s);
+            s.material = geometry.spheres[placed.shape].material;
+        } else {
+            disc_point(geometry.discs[placed.shape], local, s);
+            s.material = geometry.discs[placed.shape].material;
+        }
+    }
+    if (placed.material >= 0) s.material = placed.material;
+    if (placed.instanced) to_world(placed.to_world, s);
+    if (dot(s.ns, s.ng) < 0.0f) s.ns = -s.ns;
+    return s;
+}
+
+Vec2f surface_uv(const Mesh& mesh, std::uint32_t face, float u, float v) noexcept {
+    if (mesh.uvs.empty()) return {0, 0};
+    const Corners k = corners_of(mesh, face, u, v);
+    const auto& index = mesh.uv_index.empty() ? mesh.position_index : mesh.uv_index;
+    return mesh.uvs[index[k.a]] * k.wa + mesh.uvs[index[k.b]] * k.wb + mesh.uvs[index[k.c]] * k.wc;
+}
+
+}  // namespace tessera

@@ -1,0 +1,36 @@
+#pragma once
+// From a hit's ids to the surface point, in full float accuracy: positions come from the vertices and the
+// barycentrics (or, on spheres and discs, from the equation in double), never from o + t d.
+
+#include "renderer/core/ray.h"
+#include "renderer/core/surface_point.h"
+#include "renderer/geometry/accel.h"
+#include "renderer/geometry/shapes.h"
+
+namespace tessera {
+
+/// What of a SurfacePoint to fill in beyond position and normals.
+struct SurfaceNeeds {
+    bool uv = true;      // uv, dpdu, uv_per_length
+    bool colors = true;  // vertex colours
+};
+
+SurfacePoint surface_point(const Geometry& geometry, const HitTarget& target, const Hit& hit, const Ray& ray,
+                           SurfaceNeeds needs) noexcept;
+
+/// Texture coordinates alone, for the opacity test.
+Vec2f surface_uv(const Mesh& mesh, std::uint32_t face, float u, float v) noexcept;
+
+/// A point of a mesh's face: corner weights for a hit's u, v.
+struct FaceWeights {
+    std::uint32_t a, b, c;  // which corners, 0..3
+    float wa, wb, wc;
+};
+/// Embree splits a quad into (0, 1, 3) and (2, 3, 1).
+inline FaceWeights face_weights(bool quad, float u, float v) {
+    if (!quad) return {0, 1, 2, 1.0f - u - v, u, v};
+    if (u + v <= 1.0f) return {0, 1, 3, 1.0f - u - v, u, v};
+    return {2, 3, 1, u + v - 1.0f, 1.0f - u, 1.0f - v};
+}
+
+}  // namespace tessera

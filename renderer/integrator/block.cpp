@@ -1,0 +1,41 @@
+#include "renderer/integrator/block.h"
+
+#include <tuple>
+
+#include "renderer/core/sampler.h"
+
+namespace tessera {
+
+void Counters::add_invalid(InvalidCause cause, int x, int y, std::uint32_t sample) noexcept {
+    ++invalid[static_cast<int>(cause)];
+    // The first in (sample, y, x) order, so that what is reported does not depend on threads.
+    if (!first.set || std::tuple(sample, y, x) < std::tuple(first.sample, first.y, first.x)) {
+        first = {true, cause, x, y, sample};
+    }
+}
+
+void Counters::add(const Counters& o) noexcept {
+    rays.camera += o.rays.camera;
+    rays.bounce += o.rays.bounce;
+    rays.shadow += o.rays.shadow;
+    samples += o.samples;
+    for (int i = 0; i < kInvalidCauses; ++i) invalid[i] += o.invalid[i];
+    if (o.first.set && (!first.set || std::tuple(o.first.sample, o.first.y, o.first.x) < std::tuple(first.sample, first.y, first.x))) {
+        first = o.first;
+    }
+}
+
+LaneMask lanes_inside(const PixelWindow& w, int x, int y) noexcept {
+    LaneMask lanes = 0;
+    for (int lane = 0; lane < kLanes; ++lane) {
+        const int px = x + (lane & 3), py = y + (lane >> 2);
+        if (px >= w.x0 && px < w.x1 && py >= w.y0 && py < w.y1) lanes |= 1u << lane;
+    }
+    return lanes;
+}
+
+void seed_block(BlockJob& job, std::uint64_t seed) noexcept {
+    for (int lane = 0; lane < kLanes; ++lane) job.seeds[lane] = pixel_seed(lane_x(job, lane), lane_y(job, lane), seed);
+}
+
+}  // namespace tessera

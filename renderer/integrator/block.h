@@ -1,0 +1,64 @@
+#pragma once
+// The unit of work: an aligned 4x4 block of pixels at one sample index, absolute in the frame. Its bits depend on
+// nothing else: not on tile, crop or thread.
+
+#include <array>
+#include <cstdint>
+
+#include "renderer/api/render.h"
+#include "renderer/core/ray.h"
+#include "renderer/film/film.h"
+#include "renderer/film/filter.h"
+#include "renderer/scene/scene.h"
+
+namespace tessera {
+
+inline constexpr int kBlockSize = 4;
+
+class RayLog;
+
+/// What one worker counts; added up at the end.
+struct Counters {
+    RayCounts rays;
+    std::uint64_t samples = 0;
+    std::array<std::uint64_t, kInvalidCauses> invalid{};
+    struct First {
+        bool set = false;
+        InvalidCause cause{};
+        int x = 0, y = 0;
+        std::uint32_t sample = 0;
+    } first;
+
+    void add_invalid(InvalidCause cause, int x, int y, std::uint32_t sample) noexcept;
+    void add(const Counters& other) noexcept;
+};
+
+struct BlockJob {
+    const Scene* scene = nullptr;
+    const FilterSampler* filter = nullptr;
+    bool layers = false;       // passes beyond beauty are wanted
+    int x = 0, y = 0;          // top left pixel, multiples of 4
+    LaneMask lanes = kAllLanes;
+    std::uint32_t index = 0;   // of the sample
+    std::uint32_t seeds[kLanes]{};  // of the pixels
+    RayLog* log = nullptr;     // takes down every ray, for the benchmark
+};
+
+using BlockSamples = std::array<PathSample, kLanes>;
+
+/// Traces a block to the end of its paths.
+using BlockKernel = void (*)(const BlockJob& job, BlockSamples& out, Counters& counters) noexcept;
+
+/// The kernel of a name ("basic", "surface", "full") for an integrator.
+BlockKernel find_kernel(Integrator integrator, std::string_view name);
+
+/// Seeds of a block's pixels.
+void seed_block(BlockJob& job, std::uint64_t seed) noexcept;
+
+/// Lanes of the block at (x, y) whose pixels lie in the window.
+LaneMask lanes_inside(const PixelWindow& window, int x, int y) noexcept;
+
+inline int lane_x(const BlockJob& job, int lane) { return job.x + (lane & 3); }
+inline int lane_y(const BlockJob& job, int lane) { return job.y + (lane >> 2); }
+
+}  // namespace tessera

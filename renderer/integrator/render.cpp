@@ -1,0 +1,171 @@
+// Tiles over the film, pass after pass.
+
+#include "renderer/api/render.h"
+
+#include <algorithm>
+#include <chrono>
+#include <mutex>
+
+#include "renderer/core/parallel.h"
+#include "renderer/film/film.h"
+#include "renderer/integrator/block.h"
+#include "renderer/integrator/tiles.h"
+
+namespace tessera {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+FilmLayers layers_of(const FilmDesc& film) {
+    FilmLayers layers;
+    if (film.aovs.empty()) return {true, true, true, true};
+    for (const std::string& name : film.aovs) {
+        if (!enable_layer(name, layers)) {
+            throw Error(ExitCode::usage, film.loc, "pass '" + name + "' is unknown (there are: beauty, Z, N, P, albedo)");
+        }
+    }
+    return layers;
+}
+
+class Renderer {
+public:
+    Renderer(const Scene& scene, const RenderSettings& settings)
+        : scene_(scene), settings_(settings), window_(window_of(scene.film())), layers_(layers_of(scene.film())),
+          film_(window_, layers_), filter_(scene.film().filter, scene.film().filter_width_px),
+          kernel_(find_kernel(scene.settings().integrator, scene.kernel())), tiles_(make_tiles(window_, settings.tile)),
+          workers_(settings.threads) {}
+
+    RenderResult run() {
+        start_ = Clock::now();
+        const int spp = scene_.settings().spp;
+        int done = 0;
+        // Passes grow fourfold: an early stop leaves an even picture, and the estimate of the end is soon good.
+        for (int pass = 1; done < spp && !stopped_; pass *= 4) {
+            const int count = std::min(settings_.time_s > 0 ? affordable(done, pass) : pass, spp - done);
+            if (count == 0) break;
+            render_pass(done, done + count, spp);
+            if (!stopped_) done += count;
+        }
+        return finish(done);
+    }
+
+private:
+    static PixelWindow window_of(const FilmDesc& film) { return film.crop ? *film.crop : PixelWindow{0, 0, film.width, film.height}; }
+
+    // How many more samples the time allows, judged by those taken.
+    int affordable(int done, int wanted) const {
+        if (done == 0) return 1;
+        const double used = seconds_since(start_), each = used / done;
+        const double left = settings_.time_s - used;
+        return left < 0.5 * each ? 0 : std::clamp(static_cast<int>(left / each + 0.5), 1, std::max(1, wanted));
+    }
+
+    void render_pass(int first, int last, int spp) {
+        std::atomic<int> finished{0};
+        workers_.for_each(static_cast<int>(tiles_.size()), [&](int t) {
+            if (settings_.cancel && settings_.cancel->load(std::memory_order_relaxed)) {
+                stopped_ = true;
+                return;
+            }
+            render_tile(tiles_[t], first, last);
+            const double share = static_cast<double>(finished.fetch_add(1) + 1) / static_cast<double>(tiles_.size());
+            report(first + (last - first) * share, spp, last);
+        });
+    }
+
+    void render_tile(const PixelWindow& tile, int first, int last) {
+        Counters counters;
+        BlockJob job;
+        job.scene = &scene_;
+        job.filter = &filter_;
+        job.layers = layers_.any();
+        BlockSamples samples;
+        for (int y = tile.y0 & ~(kBlockSize - 1); y < tile.y1; y += kBlockSize) {
+            for (int x = tile.x0 & ~(kBlockSize - 1); x < tile.x1; x += kBlockSize) {
+                job.x = x, job.y = y;
+                job.lanes = lanes_inside(tile, x, y);
+                seed_block(job, scene_.settings().seed);
+                for (int index = first; index < last; ++index) {
+                    job.index = static_cast<std::uint32_t>(index);
+                    kernel_(job, samples, counters);
+                    for (int lane = 0; lane < kLanes; ++lane) {
+                        if ((job.lanes >> lane) & 1u) film_.add(lane_x(job, lane), lane_y(job, lane), samples[lane]);
+                    }
+                }
+            }
+        }
+        const std::lock_guard lock(mutex_);
+        counters_.add(counters);
+    }
+
+    void report(double samples, int spp, int pass_end) {
+        if (!settings_.progress) return;
+        const std::unique_lock lock(mutex_, std::try_to_lock);
+        if (!lock) return;
+        const double elapsed = seconds_since(start_);
+        if (elapsed - last_report_ < 0.1 && samples < spp) return;
+        last_report_ = elapsed;
+        Progress p;
+        p.fraction = samples / spp;
+        if (settings_.time_s > 0) p.fraction = std::max(p.fraction, std::min(1.0, elapsed / settings_.time_s));
+        p.elapsed_s = elapsed;
+        p.eta_s = p.fraction > 0 ? elapsed * (1 - p.fraction) / p.fraction : 0;
+        p.spp = pass_end;
+        settings_.progress(p);
+    }
+
+    RenderResult finish(int done) {
+        RenderResult r;
+        r.complete = !stopped_;
+        r.image.width = scene_.film().width;
+        r.image.height = scene_.film().height;
+        r.image.window = window_;
+        r.image.working_space = scene_.film().working_space;
+        r.image.layers = film_.layers();
+        r.stats = scene_.statistics();
+        Statistics& s = r.stats;
+        s.threads = workers_.threads();
+        s.tile = settings_.tile;
+        s.spp = done;
+        s.render_s = seconds_since(start_);
+        s.rays = counters_.rays;
+        s.samples = counters_.samples;
+        s.invalid = counters_.invalid;
+        s.memory_film = film_.bytes();
+        s.complete = r.complete;
+        if (counters_.first.set) {
+            const auto& f = counters_.first;
+            s.first_invalid = std::string(to_string(f.cause)) + " at pixel " + std::to_string(f.x) + "," + std::to_string(f.y) + " sample " + std::to_string(f.sample);
+        }
+        if (!layers_.any()) s.left_out.push_back({"passes", "only beauty was asked for"});
+        return r;
+    }
+
+    const Scene& scene_;
+    const RenderSettings& settings_;
+    PixelWindow window_;
+    FilmLayers layers_;
+    Film film_;
+    FilterSampler filter_;
+    BlockKernel kernel_;
+    std::vector<PixelWindow> tiles_;
+    Workers workers_;
+    Clock::time_point start_;
+    std::atomic<bool> stopped_{false};
+    std::mutex mutex_;
+    Counters counters_;
+    double last_report_ = -1;
+};
+
+}  // namespace
+
+RenderResult render(const Scene& scene, const RenderSettings& settings) {
+    if (settings.tile < kBlockSize || settings.tile % kBlockSize != 0) {
+        throw Error(ExitCode::usage, "tile is " + std::to_string(settings.tile) + ", must be a multiple of 4");
+    }
+    return Renderer(scene, settings).run();
+}
+
+}  // namespace tessera

@@ -1,0 +1,59 @@
+#include "renderer/integrator/replay.h"
+
+#include <algorithm>
+#include <chrono>
+#include <mutex>
+
+#include "renderer/core/parallel.h"
+#include "renderer/integrator/block.h"
+#include "renderer/integrator/ray_log.h"
+#include "renderer/integrator/tiles.h"
+
+namespace tessera {
+namespace {
+
+constexpr int kTilesAtOnce = 64;
+
+}  // namespace
+
+ReplayTimes time_replay(const Scene& scene, const RenderSettings& settings) {
+    const FilmDesc& film = scene.film();
+    const PixelWindow window = film.crop ? *film.crop : PixelWindow{0, 0, film.width, film.height};
+    const std::vector<PixelWindow> tiles = make_tiles(window, settings.tile);
+    const FilterSampler filter(film.filter, film.filter_width_px);
+    const BlockKernel kernel = find_kernel(scene.settings().integrator, scene.kernel());
+    Workers workers(settings.threads);
+    ReplayTimes times;
+    std::atomic<std::uint64_t> hits{0};
+    for (std::size_t first = 0; first < tiles.size(); first += kTilesAtOnce) {
+        const int count = static_cast<int>(std::min<std::size_t>(kTilesAtOnce, tiles.size() - first));
+        std::vector<RayLog> logs(count);
+        workers.for_each(count, [&](int t) {
+            const PixelWindow& tile = tiles[first + t];
+            BlockJob job;
+            job.scene = &scene;
+            job.filter = &filter;
+            job.log = &logs[t];
+            BlockSamples samples;
+            Counters counters;
+            for (int y = tile.y0 & ~(kBlockSize - 1); y < tile.y1; y += kBlockSize) {
+                for (int x = tile.x0 & ~(kBlockSize - 1); x < tile.x1; x += kBlockSize) {
+                    job.x = x, job.y = y;
+                    job.lanes = lanes_inside(tile, x, y);
+                    seed_block(job, scene.settings().seed);
+                    for (int s = 0; s < scene.settings().spp; ++s) {
+                        job.index = static_cast<std::uint32_t>(s);
+                        kernel(job, samples, counters);
+                    }
+                }
+            }
+        });
+        const auto start = std::chrono::steady_clock::now();
+        workers.for_each(count, [&](int t) { hits += logs[t].replay(scene.accel()); });
+        times.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        for (const RayLog& log : logs) times.rays += log.rays();
+    }
+    return times;
+}
+
+}  // namespace tessera

@@ -1,0 +1,106 @@
+#pragma once
+// From a surface point to what light can do there: the facing frame and the lobes. Shared by the integrators.
+
+#include <cmath>
+#include <type_traits>
+
+#include "renderer/scene/scene.h"
+
+namespace tessera {
+
+/// A LobeList that holds one Lambertian lobe and is as cheap as that: what kernels without specular lobes use. Every
+/// operation gives LobeList's bits.
+class DiffuseOnly {
+public:
+    explicit DiffuseOnly(Color weight) : weight_(weight) {}
+    bool empty() const noexcept { return !(max_component(weight_) > 0.0f); }
+    bool has_extended_part() const noexcept { return !empty(); }
+    LobeEval eval(Vec3f wo, Vec3f wi) const noexcept {
+        LobeEval e = DiffuseLobe{}.eval(wo, wi);
+        e.f *= weight_;
+        return e;
+    }
+    std::optional<LobeSample> sample(Vec3f wo, Vec2f u, float choice) const noexcept {
+        if (empty()) return std::nullopt;
+        auto s = DiffuseLobe{}.sample(wo, u, choice);
+        if (s) s->weight *= weight_;
+        return s;
+    }
+    Color albedo(Vec3f) const noexcept { return weight_; }
+
+private:
+    Color weight_;
+};
+
+template <Features F>
+using Lobes = std::conditional_t<F.specular || F.transmission, LobeList, DiffuseOnly>;
+
+/// The frame that faces the viewer.
+struct FacingFrame {
+    Frame shading;
+    Vec3f ng;      // geometric normal on wo's side
+    Vec3f wo;      // local
+    bool front = true;
+};
+
+/// A shading normal that wo cannot see is bent until it can, just.
+inline Vec3f visible_normal(Vec3f ns, Vec3f wo) {
+    constexpr float kGrazing = 1e-3f;
+    const float c = dot(ns, wo);
+    if (c >= kGrazing) return ns;
+    return normalize(ns + wo * (kGrazing - c));
+}
+
+template <Features F>
+FacingFrame facing_frame(const SurfacePoint& s, const ShaderProgram& program, const ShadeInput& in, const TextureStore* textures, Vec3f wo) {
+    FacingFrame f;
+    f.front = dot(s.ng, wo) >= 0.0f;
+    f.ng = f.front ? s.ng : -s.ng;
+    Vec3f n = f.front ? s.ns : -s.ns;
+    bool along = false;
+    if constexpr (F.textures || F.specular) {
+        along = program.facts().tangent;
+        if constexpr (F.textures) {
+            if (const auto mapped = program.normal(in, textures)) {
+                // The map lives in the frame of the unflipped normal.
+                const Frame base = frame_along(s.ns, s.dpdu);
+                const Vec3f m = normalize(base.to_world(*mapped));
+                n = f.front ? m : -m;
+                if (dot(n, f.ng) <= 0.0f) n = f.front ? s.ns : -s.ns;
+            }
+        }
+    }
+    n = visible_normal(n, wo);
+    f.shading = along ? frame_along(n, s.dpdu) : Frame(n);
+    f.wo = f.shading.to_local(wo);
+    return f;
+}
+
+template <Features F>
+Lobes<F> make_lobes(const ShaderProgram& program, const ShadeInput& in, const TextureStore* textures, const FacingFrame& f) {
+    const SurfaceParams p = program.surface(in, textures);
+    if constexpr (F.specular || F.transmission) {
+        return openpbr_lobes(p, f.wo, f.front);
+    } else {
+        return DiffuseOnly(p.base_color);
+    }
+}
+
+template <Features F>
+ShadeInput shade_input(const SurfacePoint& s, float cone_width, Vec3f d) {
+    ShadeInput in;
+    if constexpr (F.textures) {
+        in.uv = s.uv;
+        // The cone's footprint, stretched along the surface where it meets it at an angle, but not without end.
+        in.uv_width = cone_width * s.uv_per_length / std::fmax(std::sqrt(std::fabs(dot(s.ng, d))), 0.2f);
+    }
+    if constexpr (F.vertex_colors) in.vertex_color = s.vertex_color;
+    return in;
+}
+
+/// True if the shading frame and the geometry agree on which side wi leaves.
+inline bool same_side(Vec3f wi_world, Vec3f wi_local, Vec3f ng) {
+    return (dot(wi_world, ng) > 0.0f) == (wi_local.z > 0.0f);
+}
+
+}  // namespace tessera

@@ -1,0 +1,253 @@
+#pragma once
+// The ray tree of 1980: at each hit light straight from every source with its shadow ray, ambient light, and one ray
+// each for mirror and refraction; both children of a glass hit are traced. No diffuse interreflection.
+// Whitted, "An Improved Illumination Model for Shaded Display", CACM 23(6), 1980; children too faint to see are cut as
+// in Hall & Greenberg, "A Testbed for Realistic Image Synthesis", IEEE CG&A 3(8), 1983.
+
+#include <algorithm>
+#include <bit>
+
+#include "renderer/core/robust.h"
+#include "renderer/core/sampler.h"
+#include "renderer/integrator/block.h"
+#include "renderer/integrator/ray_log.h"
+#include "renderer/integrator/shading.h"
+
+namespace tessera {
+
+template <Features F>
+class WhittedBlock {
+public:
+    WhittedBlock(const BlockJob& job, BlockSamples& out, Counters& counters) noexcept
+        : job_(job), scene_(*job.scene), out_(out), counters_(counters),
+          max_depth_(std::min(scene_.settings().max_depth, kStack - 2)) {}
+
+    void trace() noexcept {
+        start();
+        for (std::uint32_t step = 0; pop(); ++step) {
+            intersect(step);
+            shade_ = 0;
+            for (LaneMask m = alive_; m != 0; m &= m - 1) arrive(std::countr_zero(m), step);
+            for (int l = 0; l < scene_.lights().size(); ++l) light(l, step);
+            for (LaneMask m = shade_; m != 0; m &= m - 1) branch(std::countr_zero(m));
+        }
+        for (LaneMask m = job_.lanes; m != 0; m &= m - 1) finish(std::countr_zero(m));
+    }
+
+private:
+    static constexpr int kStack = 66;
+    static constexpr float kFaintest = 1e-4f;
+
+    struct Node {
+        Ray ray;
+        Color weight{1.0f};
+        float cone_width = 0, cone_spread = 0;
+        int depth = 0;
+    };
+    // A surface that a lane stands on between the stages of a step.
+    struct Vertex {
+        SurfacePoint s;
+        FacingFrame frame;
+        LobeList lobes;
+    };
+
+    void start() noexcept {
+        SamplePairs film, lens;
+        sample_pairs(job_.seeds, job_.index, dim::kFilter, film);
+        sample_pairs(job_.seeds, job_.index, dim::kLens, lens);
+        for (LaneMask m = job_.lanes; m != 0; m &= m - 1) {
+            const int i = std::countr_zero(m);
+            out_[i] = PathSample{};
+            size_[i] = 0;
+            const Vec2f offset = job_.filter->offset(film.at(i));
+            const CameraRay c = scene_.camera().ray({static_cast<float>(lane_x(job_, i)) + 0.5f + offset.x,
+                                                     static_cast<float>(lane_y(job_, i)) + 0.5f + offset.y}, lens.at(i));
+            push(i, {c.ray, Color(1.0f), c.cone_width, c.cone_spread, 0}, InvalidCause::camera_ray);
+        }
+        counters_.samples += static_cast<std::uint64_t>(std::popcount(job_.lanes));
+    }
+
+    void push(int i, const Node& node, InvalidCause cause) noexcept {
+        if (!traceable(node.ray.o, node.ray.d)) return invalid(cause, i);
+        stack_[i][size_[i]++] = node;
+    }
+
+    // Takes the next node of every lane that has one.
+    bool pop() noexcept {
+        alive_ = 0;
+        for (LaneMask m = job_.lanes; m != 0; m &= m - 1) {
+            const int i = std::countr_zero(m);
+            if (size_[i] == 0) continue;
+            node_[i] = stack_[i][--size_[i]];
+            alive_ |= 1u << i;
+        }
+        return alive_ != 0;
+    }
+
+    void intersect(std::uint32_t step) noexcept {
+        ray_seeds(2 * step);
+        for (LaneMask m = alive_; m != 0; m &= m - 1) {
+            const int i = std::countr_zero(m);
+            packet_.ray.set(i, node_[i].ray);
+            ++(node_[i].depth == 0 ? counters_.rays.camera : counters_.rays.bounce);
+        }
+        if (job_.log) job_.log->packet(packet_.ray, alive_, seeds_, false, step == 0);
+        scene_.accel().intersect(packet_, alive_, seeds_, step == 0);
+    }
+
+    // Emission, or the background; then the surface is made ready.
+    void arrive(int i, std::uint32_t) noexcept {
+        Node& node = node_[i];
+        const Hit hit = packet_.hit(i);
+        if (!hit.valid()) {
+            out_[i].radiance += node.weight * scene_.lights().escaped(node.ray.d, 0.0f, node.depth == 0);
+            return;
+        }
+        Vertex& v = vertex_[i];
+        v.s = surface_point(scene_.geometry(), scene_.accel().target(hit), hit, node.ray, {true, F.vertex_colors});
+        if (!is_finite(v.s.p) || !is_finite(v.s.ng) || !is_finite(v.s.ns)) return invalid(InvalidCause::hit, i);
+        node.cone_width += node.cone_spread * dot(v.s.p - node.ray.o, node.ray.d);
+        if (node.depth == 0) note_first_hit(i);
+        const ShadeInput in = shade_input<F>(v.s, node.cone_width, node.ray.d);
+        const ShaderProgram* program = v.s.material >= 0 ? &scene_.program(v.s.material) : nullptr;
+        if (!program) {
+            out_[i].radiance += node.weight * light_radiance(scene_.lights()[v.s.light], node.ray.d, v.s.ng);
+            return;
+        }
+        if (program->facts().emissive) out_[i].radiance += node.weight * program->emission(in, scene_.textures());
+        v.frame = facing_frame<F>(v.s, *program, in, scene_.textures(), -node.ray.d);
+        v.lobes = make_lobes<F>(*program, in, scene_.textures(), v.frame);
+        if (node.depth == 0) out_[i].albedo = v.lobes.albedo(v.frame.wo);
+        for (int k = 0; k < v.lobes.size(); ++k) {
+            if (std::holds_alternative<DiffuseLobe>(v.lobes[k].model)) {
+                out_[i].radiance += node.weight * v.lobes[k].weight * scene_.lights().ambient();
+            }
+        }
+        shade_ |= 1u << i;
+    }
+
+    // One light for all lanes: points on it, then the shadow rays.
+    void light(int index, std::uint32_t step) noexcept {
+        SamplePairs u;
+        sample_pairs(job_.seeds, job_.index, dim::vertex(step, dim::kLight) + 0x10000u * static_cast<std::uint32_t>(index + 1), u);
+        LaneMask waiting = 0;
+        if (std::holds_alternative<EnvironmentLight>(scene_.lights()[index])) return;  // that is the ambient light
+        for (LaneMask m = shade_; m != 0; m &= m - 1) {
+            const int i = std::countr_zero(m);
+            if (aim(i, scene_.lights()[index], u.at(i))) waiting |= 1u << i;
+        }
+        if (waiting == 0) return;
+        counters_.rays.shadow += static_cast<std::uint64_t>(std::popcount(waiting));
+        ray_seeds(2 * step + 1);
+        if (job_.log) job_.log->packet(shadow_, waiting, seeds_, true, step == 0);
+        const LaneMask blocked = scene_.accel().occluded(shadow_, waiting, seeds_, step == 0);
+        for (LaneMask m = waiting & ~blocked; m != 0; m &= m - 1) {
+            const int i = std::countr_zero(m);
+            out_[i].radiance += pending_[i];
+        }
+    }
+
+    bool aim(int i, const Light& source, Vec2f u) noexcept {
+        const Vertex& v = vertex_[i];
+        LightSample light;
+        if (!v.lobes.has_extended_part() || !sample_light(source, {v.s.p}, u, light)) return false;
+        const Vec3f wi = v.frame.shading.to_local(light.wi);
+        if (!same_side(light.wi, wi, v.frame.ng)) return false;
+        if (light.material >= 0) {
+            ShadeInput in;
+            in.uv = light.uv;
+            light.radiance = scene_.program(light.material).emission(in, scene_.textures());
+        }
+        pending_[i] = node_[i].weight * v.lobes.eval(v.frame.wo, wi).f * light.radiance * (1.0f / light.pdf);
+        if (!(max_component(pending_[i]) > 0.0f)) return false;
+        const Vec3f o = offset_origin(v.s.p, v.s.p_error, v.s.ng, light.wi);
+        Ray ray{o, light.wi, kInfinity, kOtherRays};
+        if (!light.infinite) {
+            ray.d = offset_origin(light.p, light.p_error, light.n, -light.wi) - o;
+            ray.t_max = 0x1.fffffcp-1f;
+        }
+        if (!traceable(ray.o, ray.d)) {
+            invalid(InvalidCause::shadow_ray, i);
+            return false;
+        }
+        shadow_.set(i, ray);
+        return true;
+    }
+
+    // Mirror and refraction rays of the smooth lobes.
+    void branch(int i) noexcept {
+        const Vertex& v = vertex_[i];
+        if (node_[i].depth >= max_depth_) return;
+        for (int k = 0; k < v.lobes.size(); ++k) {
+            const Lobe& lobe = v.lobes[k];
+            if (!lobe.delta) continue;
+            if (const auto* glass = std::get_if<SmoothGlass>(&lobe.model)) {
+                float cos_t = 0;
+                const float f = fresnel_dielectric(v.frame.wo.z, glass->eta, &cos_t);
+                child(i, glass->reflected(v.frame.wo), lobe.weight * f);
+                if (f < 1.0f) child(i, glass->transmitted(v.frame.wo, cos_t), lobe.weight * (1.0f - f));
+            } else if (const auto* thin = std::get_if<ThinGlass>(&lobe.model)) {
+                const float r = thin->reflectance(v.frame.wo.z);
+                child(i, *thin->sample(v.frame.wo, {}, -1.0f), lobe.weight * r);
+                child(i, *thin->sample(v.frame.wo, {}, 2.0f), lobe.weight * (1.0f - r));
+            } else {
+                const auto s = std::visit([&](const auto& m) { return m.sample(v.frame.wo, Vec2f{}, 0.0f); }, lobe.model);
+                if (s) child(i, *s, lobe.weight);
+            }
+        }
+    }
+
+    void child(int i, const LobeSample& s, Color share) noexcept {
+        const Vertex& v = vertex_[i];
+        const Node& node = node_[i];
+        const Vec3f wi = v.frame.shading.to_world(s.wi);
+        const Color weight = node.weight * s.weight * share;
+        if (!(max_component(weight) > kFaintest) || !same_side(wi, s.wi, v.frame.ng)) return;
+        push(i, {{offset_origin(v.s.p, v.s.p_error, v.s.ng, wi), wi, kInfinity, kOtherRays}, weight, node.cone_width, node.cone_spread, node.depth + 1},
+             InvalidCause::bounce_ray);
+    }
+
+    void note_first_hit(int i) noexcept {
+        PathSample& o = out_[i];
+        const SurfacePoint& s = vertex_[i].s;
+        o.alpha = 1.0f;
+        o.hit = true;
+        o.z = dot(s.p - scene_.camera().position(), scene_.camera().forward());
+        o.p = Vec3f(Vec3d(s.p) + scene_.origin());
+        o.n = dot(s.ns, node_[i].ray.d) <= 0.0f ? s.ns : -s.ns;
+    }
+
+    void finish(int i) noexcept {
+        PathSample& o = out_[i];
+        o.albedo = min(o.albedo, Color(1.0f));
+        if (!is_finite(o.radiance) || min_component(o.radiance) < 0.0f) {
+            invalid(InvalidCause::radiance, i);
+            o.radiance = Color(0.0f);
+        }
+    }
+
+    void invalid(InvalidCause cause, int i) noexcept {
+        counters_.add_invalid(cause, lane_x(job_, i), lane_y(job_, i), job_.index);
+    }
+    void ray_seeds(std::uint32_t step) noexcept {
+        const std::uint32_t salt = hash_combine(job_.index, step);
+        for (int i = 0; i < kLanes; ++i) seeds_[i] = hash_combine(job_.seeds[i], salt);
+    }
+
+    const BlockJob& job_;
+    const Scene& scene_;
+    BlockSamples& out_;
+    Counters& counters_;
+    int max_depth_;
+    LaneMask alive_ = 0, shade_ = 0;
+    HitPacket packet_;
+    RayPacket shadow_;
+    Node node_[kLanes];
+    Vertex vertex_[kLanes];
+    Color pending_[kLanes];
+    Node stack_[kLanes][kStack];
+    int size_[kLanes]{};
+    std::uint32_t seeds_[kLanes];
+};
+
+}  // namespace tessera

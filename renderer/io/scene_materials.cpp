@@ -1,0 +1,280 @@
+#include <algorithm>
+#include <array>
+
+#include "renderer/io/nearest_name.h"
+#include "renderer/io/scene_textures.h"
+
+namespace tessera {
+namespace {
+
+constexpr int kMaxInheritance = 64;
+
+/// What a [material.NAME] is read into: custom rows need the reader beside the material.
+struct MaterialTarget {
+    MaterialDesc& material;
+    SceneReader& reader;
+};
+
+bool is_image(const Value& value) { return value.table() != nullptr; }
+
+Form input_form(int count, const Limits& limits, const KeySet<TextureEntry>& image) {
+    return {.kind = Form::Kind::input,
+            .count = count,
+            .or_one = true,
+            .limits = limits,
+            .tables = {&image.list}};
+}
+
+/// key read as plain numbers (of an input that is no image).
+std::optional<Plain> plain_input(const Value& value, const Key& key, const ReadContext& at) {
+    const bool writable = value.list() || std::holds_alternative<double>(value.data) ||
+                          std::holds_alternative<std::int64_t>(value.data);
+    if (!writable || (key.form.count == 1 && value.list())) {
+        report_misfit(value, key.name, describe(key.form), at);
+        return std::nullopt;
+    }
+    Key plain{key.name, key.form, "", nullptr};
+    plain.form.kind = key.form.count == 1 ? Form::Kind::number : Form::Kind::numbers;
+    return plain_value(value, plain, at);
+}
+
+TextureEntry read_image(const Value& value, const KeySet<TextureEntry>& keys, const Key& key,
+                        const ReadContext& at) {
+    TextureEntry entry;
+    read_keys(value, keys, entry, {at.problems, at.subject + ": " + key.name});
+    return entry;
+}
+
+Key color_input(const std::string& name, ColorInput MaterialDesc::*member, const std::string& help,
+                const Limits& limits) {
+    const auto store = [member](void* object, const Value& value, const Key& key,
+                                const ReadContext& at) {
+        const auto& target = *static_cast<MaterialTarget*>(object);
+        ColorInput& input = target.material.*member;
+        if (is_image(value)) {
+            const TextureEntry entry = read_image(value, color_texture_keys(), key, at);
+            input = {entry.tint, add_texture(value, entry, at, target.reader)};
+        } else if (const auto plain = plain_input(value, key, at)) {
+            input = {};
+            params::assign(*plain, input.value);
+        }
+    };
+    const Float3 initial = (MaterialDesc{}.*member).value;
+    return {name, input_form(3, limits, color_texture_keys()), help, store,
+            params::json(std::vector<double>(initial.begin(), initial.end()))};
+}
+
+Key scalar_input(const std::string& name, FloatInput MaterialDesc::*member, const std::string& help,
+                 const Limits& limits = kUnit) {
+    const auto store = [member](void* object, const Value& value, const Key& key,
+                                const ReadContext& at) {
+        const auto& target = *static_cast<MaterialTarget*>(object);
+        FloatInput& input = target.material.*member;
+        if (is_image(value)) {
+            const TextureEntry entry = read_image(value, scalar_texture_keys(), key, at);
+            const int texture = add_texture(value, entry, at, target.reader);
+            input = {entry.factor, texture, entry.channel, entry.invert};
+        } else if (const auto plain = plain_input(value, key, at)) {
+            input = {};
+            params::assign(*plain, input.value);
+        }
+    };
+    return {name, input_form(1, limits, scalar_texture_keys()), help, store,
+            params::json(double((MaterialDesc{}.*member).value))};
+}
+
+Key normal_input() {
+    const auto store = [](void* object, const Value& value, const Key& key, const ReadContext& at) {
+        const auto& target = *static_cast<MaterialTarget*>(object);
+        if (!is_image(value)) return report_misfit(value, key.name, describe(key.form), at);
+        const TextureEntry entry = read_image(value, normal_texture_keys(), key, at);
+        target.material.geometry_normal = add_texture(value, entry, at, target.reader);
+        target.material.geometry_normal_scale = entry.scale_normal;
+    };
+    const Form form{.kind = Form::Kind::image, .tables = {&normal_texture_keys().list}};
+    return {"geometry_normal", form, "Tangent-space normal map, OpenGL handedness (green is up).",
+            store};
+}
+
+/// A row whose member is plain.
+template <class M>
+Key plain_row(const std::string& name, M MaterialDesc::*member, const std::string& help,
+              const Limits& limits = kAnyNumber) {
+    Key row = key(name, member, help, limits);
+    row.store = [inner = row.store](void* object, const Value& value, const Key& k,
+                                    const ReadContext& at) {
+        inner(&static_cast<MaterialTarget*>(object)->material, value, k, at);
+    };
+    return row;
+}
+
+/// inherits is read before all else; here it only has its place in the list.
+Key inherits_row() {
+    const auto store = [](void*, const Value&, const Key&, const ReadContext&) {};
+    const Form form{.kind = Form::Kind::text};
+    return {"inherits", form,
+            "Starts from this material; its own name: from the OBJ library's of that name.", store};
+}
+
+/// An OpenPBR parameter of the standard that has no meaning here yet.
+Key unsupported(const std::string& name, int count) {
+    const auto store = [](void* object, const Value& value, const Key& key, const ReadContext& at) {
+        auto& target = *static_cast<MaterialTarget*>(object);
+        const bool flag = std::holds_alternative<bool>(value.data);
+        if (!is_image(value) && !flag && !plain_input(value, key, at)) return;
+        if (!target.reader.ignored.insert(key.name).second) return;
+        at.problems.warn(value.loc,
+                         at.subject + ": " + key.name + " is not supported yet, ignored");
+    };
+    const Form form =
+        input_form(count, kAnyNumber, count == 3 ? color_texture_keys() : scalar_texture_keys());
+    return {.name = name,
+            .form = form,
+            .help = "Not supported yet, ignored.",
+            .store = store,
+            .supported = false};
+}
+
+std::vector<Key> supported_rows() {
+    using M = MaterialDesc;
+    return {
+        inherits_row(),
+        scalar_input("base_weight", &M::base_weight, "Amount of the base."),
+        color_input("base_color", &M::base_color, "Colour of the diffuse or metal base.",
+                    kUnitClamped),
+        scalar_input("base_metalness", &M::base_metalness, "0 dielectric, 1 metal."),
+        scalar_input("specular_weight", &M::specular_weight, "Amount of the specular reflection."),
+        color_input("specular_color", &M::specular_color, "Tint of the specular reflection.",
+                    kUnitClamped),
+        scalar_input("specular_roughness", &M::specular_roughness, "0 mirror, 1 dull."),
+        scalar_input("specular_roughness_anisotropy", &M::specular_roughness_anisotropy,
+                     "Stretch of the highlight along the tangent."),
+        plain_row("specular_ior", &M::specular_ior, "Index of refraction.",
+                  {.low = 0.1, .high = 10}),
+        scalar_input("transmission_weight", &M::transmission_weight, "0 opaque, 1 glass."),
+        color_input("transmission_color", &M::transmission_color, "Tint of what passes through.",
+                    kUnitClamped),
+        scalar_input("emission_luminance", &M::emission_luminance, "Emitted radiance, W/m2/sr.",
+                     kAtLeast0),
+        color_input("emission_color", &M::emission_color, "Factor on the emission.", kAtLeast0),
+        scalar_input("geometry_opacity", &M::geometry_opacity, "0 cut out, 1 there."),
+        plain_row("geometry_thin_walled", &M::geometry_thin_walled, "A sheet without an inside."),
+        normal_input(),
+        plain_row("use_vertex_color", &M::use_vertex_color,
+                  "base_color is multiplied by the mesh's colours."),
+    };
+}
+
+const KeySet<MaterialTarget>& material_rows() {
+    static const KeySet<MaterialTarget> keys = [] {
+        KeySet<MaterialTarget> rows{{"material", supported_rows()}};
+        const auto add = [&](int count, std::initializer_list<const char*> names) {
+            for (const char* name : names) rows.list.keys.push_back(unsupported(name, count));
+        };
+        add(1, {"base_diffuse_roughness", "transmission_depth", "transmission_scatter_anisotropy",
+                "transmission_dispersion_scale", "transmission_dispersion_abbe_number",
+                "subsurface_weight", "subsurface_radius", "subsurface_scatter_anisotropy",
+                "coat_weight", "coat_roughness", "coat_roughness_anisotropy", "coat_ior",
+                "coat_darkening", "fuzz_weight", "fuzz_roughness", "thin_film_weight",
+                "thin_film_thickness", "thin_film_ior"});
+        add(3, {"transmission_scatter", "subsurface_color", "subsurface_radius_scale", "coat_color",
+                "fuzz_color", "geometry_tangent", "geometry_coat_normal", "geometry_coat_tangent"});
+        return rows;
+    }();
+    return keys;
+}
+
+/// Reads the [material.*] tables, each after the one it inherits from.
+class MaterialReader {
+public:
+    MaterialReader(const Value& tables, SceneReader& reader) : tables_(tables), reader_(reader) {
+        for (std::size_t i = 0; i < reader.scene.materials.size(); ++i) {
+            const std::string& name = reader.scene.materials[i].name;
+            library_[name].push_back(static_cast<int>(i));
+            reader.materials.emplace(name, static_cast<int>(i));
+        }
+    }
+
+    void read_all() {
+        for (const auto& [name, table] : *tables_.table()) read(name, table, 0);
+    }
+
+private:
+    void read(const std::string& name, const Value& table, int depth) {
+        if (!started_.insert(name).second) return;
+        const ReadContext at{reader_.problems, "material '" + name + "'", "input"};
+        MaterialDesc material = inherited(name, table, depth, at);
+        material.name = name;
+        material.loc = table.loc;
+        MaterialTarget target{material, reader_};
+        read_keys(table, material_rows(), target, at);
+        put(name, std::move(material), table.find("inherits") != nullptr);
+        done_.insert(name);
+    }
+
+    MaterialDesc inherited(const std::string& name, const Value& table, int depth,
+                           const ReadContext& at) {
+        const Value* inherits = table.find("inherits");
+        if (!inherits) return {};
+        if (!inherits->text()) {
+            report_misfit(*inherits, "inherits", "a text in quotes", at);
+            return {};
+        }
+        const std::string& parent = *inherits->text();
+        const Value* parent_table = parent == name ? nullptr : tables_.find(parent);
+        if (parent_table) {
+            if (depth < kMaxInheritance) read(parent, *parent_table, depth + 1);
+            if (!done_.contains(parent)) {
+                at.problems.error(inherits->loc,
+                                  at.subject + ": inherits in a circle or deeper than 64");
+                return {};
+            }
+        } else if (!library_.contains(parent)) {
+            std::vector<std::string> names;
+            for (const auto& [known, index] : library_) names.push_back(known);
+            for (const auto& [known, other] : *tables_.table()) {
+                if (known != name) names.push_back(known);
+            }
+            at.problems.error(inherits->loc, at.subject + ": there is no material '" + parent +
+                                                 "' to inherit from" + did_you_mean(parent, names));
+            return {};
+        }
+        return reader_.scene.materials[static_cast<std::size_t>(reader_.materials.at(parent))];
+    }
+
+    void put(const std::string& name, MaterialDesc material, bool inherits) {
+        std::vector<MaterialDesc>& all = reader_.scene.materials;
+        const auto old = library_.find(name);
+        if (old == library_.end()) {
+            reader_.materials[name] = static_cast<int>(all.size());
+            all.push_back(std::move(material));
+            return;
+        }
+        const std::string did = inherits ? "changes" : "replaces";
+        reader_.problems.note(material.loc,
+                              "material '" + name + "' " + did + " the one of the OBJ's library");
+        for (const int index : old->second) all[static_cast<std::size_t>(index)] = material;
+    }
+
+    const Value& tables_;
+    SceneReader& reader_;
+    std::map<std::string, std::vector<int>, std::less<>> library_;
+    std::set<std::string> started_;
+    std::set<std::string> done_;
+};
+
+}  // namespace
+
+void read_materials(const Value& document, SceneReader& reader) {
+    static const Value kNone{Table{}, {}};
+    const Value* tables = document.find("material");
+    if (tables && !tables->table()) {
+        report_misfit(*tables, "material", "tables named [material.NAME]", {reader.problems, ""});
+        tables = nullptr;
+    }
+    MaterialReader(tables ? *tables : kNone, reader).read_all();
+}
+
+const KeyList& material_keys() { return material_rows().list; }
+
+}  // namespace tessera

@@ -1,0 +1,170 @@
+#include "renderer/io/scene_shapes.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include "renderer/io/obj.h"
+
+namespace tessera {
+namespace {
+
+struct MeshEntry {
+    CommonEntry common;
+    std::string file;
+};
+
+struct SphereEntry {
+    CommonEntry common;
+    SphereDesc sphere;
+};
+
+struct DiscEntry {
+    CommonEntry common;
+    DiscDesc disc;
+};
+
+const KeySet<MeshEntry>& mesh_rows() {
+    static const auto keys = rows_with_common<MeshEntry>(
+        "mesh",
+        {key("file", &MeshEntry::file, "An OBJ file; without a name the mesh is called after it.")
+             .must()});
+    return keys;
+}
+
+const KeySet<SphereEntry>& sphere_rows() {
+    static const auto keys = [] {
+        KeySet<SphereDesc> own{{"sphere",
+                                {
+                                    key("center", &SphereDesc::center, "Its middle."),
+                                    key("radius", &SphereDesc::radius, "Its radius.", kAbove0),
+                                }}};
+        KeySet<SphereEntry> rows{{"sphere", {}}};
+        add_part(rows, own, &SphereEntry::sphere);
+        add_part(rows, common_rows(), &SphereEntry::common);
+        return rows;
+    }();
+    return keys;
+}
+
+const KeySet<DiscEntry>& disc_rows() {
+    static const auto keys = [] {
+        KeySet<DiscDesc> own{
+            {"disc",
+             {
+                 key("center", &DiscDesc::center, "Its middle."),
+                 key("normal", &DiscDesc::normal, "The way its front looks; any length."),
+                 key("radius", &DiscDesc::radius, "Its radius.", kAbove0),
+             }}};
+        KeySet<DiscEntry> rows{{"disc", {}}};
+        add_part(rows, own, &DiscEntry::disc);
+        add_part(rows, common_rows(), &DiscEntry::common);
+        return rows;
+    }();
+    return keys;
+}
+
+class MeshLoader {
+public:
+    explicit MeshLoader(SceneReader& reader) : reader_(reader) {}
+
+    /// The mesh of a file, loaded once however many [[mesh]] name it; -1 after reporting.
+    int load(const std::string& file, const SourceLoc& loc, const ReadContext& at) {
+        const AssetPath found = reader_.find(file, loc);
+        if (!found.note.empty()) at.problems.note(loc, at.subject + ": " + found.note);
+        if (found.path.empty()) {
+            at.problems.error(loc, at.subject + ": file '" + file + "' " + found.reason);
+            return -1;
+        }
+        const auto [entry, is_new] = loaded_.emplace(found.path, -1);
+        if (is_new) entry->second = load_new(found.path, loc, at);
+        return entry->second;
+    }
+
+private:
+    int load_new(const std::string& path, const SourceLoc& loc, const ReadContext& at) {
+        try {
+            return load_obj(path, reader_.assets, reader_.scene, at.problems, {loc});
+        } catch (const Error& error) {
+            const bool full = at.problems.errors().size() >= std::size_t(Problems::kMax);
+            if (full || error.code() != ExitCode::scene) throw;
+            at.problems.error({}, error.what());
+            return -1;
+        }
+    }
+
+    SceneReader& reader_;
+    std::map<std::string, int> loaded_;
+};
+
+void read_spheres(const Value& document, SceneReader& reader, ShapeNames& names) {
+    for (const Value& table : tables_of(document, "sphere", reader.problems)) {
+        std::vector<SphereDesc>& all = reader.scene.spheres;
+        const ReadContext at{reader.problems, subject_of("sphere", table, all.size())};
+        SphereEntry entry;
+        read_keys(table, sphere_rows(), entry, at);
+        const int material = reader.material(entry.common.material, material_loc(table), at);
+        entry.sphere.name = entry.common.name;
+        entry.sphere.loc = table.loc;
+        entry.sphere.material = material >= 0 ? material : reader.default_material();
+        entry.common.material.clear();  // it is the sphere's own, not a replacement
+        add_named(table, entry.common, {ShapeKind::sphere, static_cast<int>(all.size())}, true, at,
+                  names);
+        all.push_back(entry.sphere);
+    }
+}
+
+void read_discs(const Value& document, SceneReader& reader, ShapeNames& names) {
+    for (const Value& table : tables_of(document, "disc", reader.problems)) {
+        std::vector<DiscDesc>& all = reader.scene.discs;
+        const ReadContext at{reader.problems, subject_of("disc", table, all.size())};
+        DiscEntry entry;
+        read_keys(table, disc_rows(), entry, at);
+        const Double3& n = entry.disc.normal;
+        if (!(std::hypot(n[0], n[1], n[2]) > 1e-30)) {
+            at.problems.error(table.find("normal")->loc, at.subject + ": normal has no direction");
+        }
+        const int material = reader.material(entry.common.material, material_loc(table), at);
+        entry.disc.name = entry.common.name;
+        entry.disc.loc = table.loc;
+        entry.disc.material = material >= 0 ? material : reader.default_material();
+        entry.common.material.clear();
+        add_named(table, entry.common, {ShapeKind::disc, static_cast<int>(all.size())}, true, at,
+                  names);
+        all.push_back(entry.disc);
+    }
+}
+
+}  // namespace
+
+void load_meshes(const Value& document, SceneReader& reader, ShapeNames& names) {
+    MeshLoader loader(reader);
+    std::size_t number = 0;
+    for (const Value& table : tables_of(document, "mesh", reader.problems)) {
+        const ReadContext at{reader.problems, subject_of("mesh", table, number++)};
+        MeshEntry entry;
+        read_keys(table, mesh_rows(), entry, at);
+        const bool named = !entry.common.name.empty();
+        if (!named) entry.common.name = std::filesystem::path(entry.file).stem().string();
+        int index = -1;
+        if (!entry.file.empty()) index = loader.load(entry.file, table.find("file")->loc, at);
+        add_named(table, entry.common, {ShapeKind::mesh, index}, named, at, names);
+    }
+}
+
+void read_shapes(const Value& document, SceneReader& reader, ShapeNames& names) {
+    for (const NamedShape& mesh : names.all()) {
+        const ReadContext at{reader.problems, "mesh '" + mesh.name + "'"};
+        reader.material(mesh.material, mesh.material_loc, at);
+    }
+    read_spheres(document, reader, names);
+    read_discs(document, reader, names);
+    read_groups(document, reader, names);
+    read_instances(document, reader, names);
+    check_groups(reader.scene, reader.problems);
+}
+
+const KeyList& mesh_keys() { return mesh_rows().list; }
+const KeyList& sphere_keys() { return sphere_rows().list; }
+const KeyList& disc_keys() { return disc_rows().list; }
+
+}  // namespace tessera

@@ -1,0 +1,88 @@
+#include "renderer/io/scene_textures.h"
+
+namespace tessera {
+namespace {
+
+using T = TextureEntry;
+
+std::vector<Key> placement_rows() {
+    return {
+        key("file", &T::file, "The image.").must(),
+        uniform_key("scale", &T::scale,
+                    "uv * scale + offset is looked up: 4 repeats the image 4 times."),
+        key("offset", &T::offset, "Added to uv after scale."),
+        choice("wrap", &T::wrap, {"repeat", "clamp", "mirror", "black"},
+               "What lies outside the image."),
+    };
+}
+
+std::vector<Key> value_rows() {
+    std::vector<Key> rows = placement_rows();
+    rows.push_back(key("color_space", &T::color_space,
+                       "Colour space; absent: sRGB for colours, raw for scalars."));
+    rows.push_back(key("gain", &T::gain, "Factor on the image, before bias."));
+    rows.push_back(key("bias", &T::bias, "Added to the image after gain."));
+    return rows;
+}
+
+}  // namespace
+
+const KeySet<TextureEntry>& color_texture_keys() {
+    static const KeySet<T> keys = [] {
+        KeySet<T> rows{{"image for a colour", value_rows()}};
+        rows.list.keys.push_back(
+            key("factor", &T::tint, "Number or colour the image is multiplied by.", kAtLeast0));
+        return rows;
+    }();
+    return keys;
+}
+
+const KeySet<TextureEntry>& scalar_texture_keys() {
+    static const KeySet<T> keys = [] {
+        KeySet<T> rows{{"image for a scalar", value_rows()}};
+        std::vector<Key>& list = rows.list.keys;
+        Key channel =
+            choice("channel", &T::channel, {"automatic", "r", "g", "b", "a", "luminance"},
+                   "The channel that is read; automatic: a for opacity if there is one, else r.");
+        list.push_back(std::move(channel));
+        list.push_back(key("invert", &T::invert, "1 - image, before factor."));
+        list.push_back(key("factor", &T::factor, "Factor on the image.", kAtLeast0));
+        return rows;
+    }();
+    return keys;
+}
+
+const KeySet<TextureEntry>& normal_texture_keys() {
+    static const KeySet<T> keys = [] {
+        KeySet<T> rows{{"normal map", placement_rows()}};
+        rows.list.keys.push_back(
+            key("scale_normal", &T::scale_normal, "Strength of the bumps.", kAtLeast0));
+        return rows;
+    }();
+    return keys;
+}
+
+int add_texture(const Value& table, const TextureEntry& entry, const ReadContext& at,
+                SceneReader& reader) {
+    if (entry.file.empty()) return -1;  // reported as missing
+    const Value* written = table.find("file");
+    const SourceLoc loc = written ? written->loc : table.loc;
+    const AssetPath found = reader.find(entry.file, loc);
+    if (found.refused) {
+        at.problems.error(loc, at.subject + ": texture '" + entry.file + "' " + found.reason);
+        return -1;
+    }
+    if (!found.note.empty()) at.problems.note(loc, at.subject + ": texture " + found.note);
+    TextureDesc texture;
+    texture.file = found.path.empty() ? reader.folder_of(loc) + "/" + entry.file : found.path;
+    texture.color_space = entry.color_space;
+    texture.wrap_u = texture.wrap_v = entry.wrap;
+    texture.scale = entry.scale;
+    texture.offset = entry.offset;
+    texture.gain = entry.gain;
+    texture.bias = entry.bias;
+    texture.loc = loc;
+    return reader.add_texture(std::move(texture));
+}
+
+}  // namespace tessera

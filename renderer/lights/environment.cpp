@@ -1,0 +1,87 @@
+#include <algorithm>
+#include <cmath>
+
+#include "renderer/lights/light.h"
+
+namespace tessera {
+namespace {
+
+double luminance_of(Color c) {
+    return 0.2126 * static_cast<double>(c.x) + 0.7152 * static_cast<double>(c.y) + 0.0722 * static_cast<double>(c.z);
+}
+
+}  // namespace
+
+// u = 0.5 looks along -z, u grows toward +x; v = 0 is +y.
+Vec2f EnvironmentLight::to_uv(Vec3f d) const {
+    const Vec3f w{cos_rotate * d.x - sin_rotate * d.z, d.y, sin_rotate * d.x + cos_rotate * d.z};
+    const float u = 0.5f + std::atan2(w.x, -w.z) * (0.5f * kInvPi);
+    const float v = std::atan2(std::sqrt(w.x * w.x + w.z * w.z), w.y) * kInvPi;
+    return {u, v};
+}
+
+Vec3f EnvironmentLight::to_direction(Vec2f uv) const {
+    const float phi = (uv.x - 0.5f) * 2.0f * kPi, theta = uv.y * kPi;
+    const float r = std::sin(theta);
+    const Vec3f w{r * std::sin(phi), std::cos(theta), -r * std::cos(phi)};
+    return {cos_rotate * w.x + sin_rotate * w.z, w.y, -sin_rotate * w.x + cos_rotate * w.z};
+}
+
+Color EnvironmentLight::radiance(Vec3f d) const {
+    if (width == 0) return scale;
+    const Vec2f uv = to_uv(d);
+    const float x = uv.x * static_cast<float>(width) - 0.5f, y = uv.y * static_cast<float>(height) - 0.5f;
+    const float fx = std::floor(x), fy = std::floor(y), tx = x - fx, ty = y - fy;
+    const auto column = [&](int i) { return i < 0 ? i + width : (i >= width ? i - width : i); };
+    const int x0 = column(static_cast<int>(fx)), x1 = column(static_cast<int>(fx) + 1);
+    const int y0 = std::clamp(static_cast<int>(fy), 0, height - 1), y1 = std::clamp(static_cast<int>(fy) + 1, 0, height - 1);
+    const Color* r0 = &texels[std::size_t(y0) * width];
+    const Color* r1 = &texels[std::size_t(y1) * width];
+    return lerp(lerp(r0[x0], r0[x1], tx), lerp(r1[x0], r1[x1], tx), ty) * scale;
+}
+
+float EnvironmentLight::pdf(Vec3f d) const {
+    if (width == 0) return 0.25f * kInvPi;
+    const Vec2f uv = to_uv(d);
+    const float sin_theta = std::sin(uv.y * kPi);
+    return sin_theta > 0.0f ? table.pdf(uv) / (2.0f * kPi * kPi * sin_theta) : 0.0f;
+}
+
+EnvironmentLight make_constant_environment(Color radiance, bool camera_visible) {
+    EnvironmentLight e;
+    e.scale = radiance;
+    e.camera_visible = camera_visible;
+    return e;
+}
+
+EnvironmentLight make_environment(int width, int height, std::vector<Color> texels, Color scale, double rotate_deg,
+                                  bool camera_visible) {
+    EnvironmentLight e;
+    e.width = width;
+    e.height = height;
+    e.texels = std::move(texels);
+    e.scale = scale;
+    e.camera_visible = camera_visible;
+    const double a = rotate_deg * 3.14159265358979323846 / 180.0;
+    e.cos_rotate = static_cast<float>(std::cos(a));
+    e.sin_rotate = static_cast<float>(std::sin(a));
+    // The mean over a texel of the bilinear look-up: weights 1/8, 6/8, 1/8 each way, times the texel's solid angle.
+    std::vector<double> weights(std::size_t(width) * height);
+    const auto at = [&](int x, int y) {
+        return luminance_of(e.texels[std::size_t(std::clamp(y, 0, height - 1)) * width + (x + width) % width]);
+    };
+    for (int y = 0; y < height; ++y) {
+        const double sine = std::sin((y + 0.5) / height * 3.14159265358979323846);
+        for (int x = 0; x < width; ++x) {
+            double sum = 0;
+            for (int dy = -1; dy <= 1; ++dy) {
+                for (int dx = -1; dx <= 1; ++dx) sum += at(x + dx, y + dy) * (dx ? 0.125 : 0.75) * (dy ? 0.125 : 0.75);
+            }
+            weights[std::size_t(y) * width + x] = sum * sine;
+        }
+    }
+    e.table = Distribution2D(width, height, weights);
+    return e;
+}
+
+}  // namespace tessera

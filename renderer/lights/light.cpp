@@ -1,0 +1,204 @@
+#include "renderer/lights/light.h"
+
+#include <cmath>
+
+#include "renderer/core/robust.h"
+#include "renderer/core/warp.h"
+#include "renderer/lights/spherical_rectangle.h"
+
+namespace tessera {
+namespace {
+
+float distance2_over_cos(Vec3f from, Vec3f to, Vec3f n, Vec3f wi) {
+    return length2(to - from) / std::fabs(dot(n, wi));
+}
+
+bool rectangle_by_solid_angle(const QuadLight& l, Vec3f p) {
+    if (!l.rectangle) return false;
+    // A cheap bound first: seen from p the rectangle is at most area / d^2 large.
+    const Vec3f middle = l.corner + (l.edge_u + l.edge_v) * 0.5f - p;
+    const float d2 = length2(middle);
+    return std::fabs(dot(middle, l.normal)) * l.area > 0.5f * kMinSolidAngle * d2 * std::sqrt(d2);
+}
+
+// Fills in the sample of a point on a surface that was chosen with `density` per area.
+bool from_area(Vec3f ref, Vec3f p, Vec3f n, float density, LightSample& s) {
+    const Vec3f d = p - ref;
+    const float d2 = length2(d);
+    if (!(d2 > 0.0f)) return false;
+    s.wi = d / std::sqrt(d2);
+    const float cos = std::fabs(dot(n, s.wi));
+    if (!(cos > 1e-7f)) return false;
+    s.pdf = density * d2 / cos;
+    s.p = p;
+    s.n = n;
+    return std::isfinite(s.pdf);
+}
+
+bool sample(const PointLight& l, const LightReference& ref, Vec2f, LightSample& s) {
+    const Vec3f d = l.position - ref.p;
+    const float d2 = length2(d);
+    if (!(d2 > 0.0f)) return false;
+    s.wi = d / std::sqrt(d2);
+    s.radiance = l.intensity / d2;
+    s.pdf = 1;
+    s.delta = true;
+    s.p = l.position;
+    return true;
+}
+
+bool sample(const SpotLight& l, const LightReference& ref, Vec2f u, LightSample& s) {
+    if (!sample(PointLight{l.position, l.intensity}, ref, u, s)) return false;
+    const float f = l.falloff(-dot(s.wi, l.direction));
+    s.radiance *= f;
+    return f > 0.0f;
+}
+
+bool sample(const DistantLight& l, const LightReference&, Vec2f u, LightSample& s) {
+    s.infinite = true;
+    if (l.one_minus_cos == 0.0f) {
+        s.wi = l.to_light;
+        s.radiance = l.irradiance;
+        s.pdf = 1;
+        s.delta = true;
+        return true;
+    }
+    s.wi = Frame(l.to_light).to_world(warp_cone(u, l.one_minus_cos));
+    s.radiance = l.radiance;
+    s.pdf = 1.0f / (2.0f * kPi * l.one_minus_cos);
+    return true;
+}
+
+bool sample(const QuadLight& l, const LightReference& ref, Vec2f u, LightSample& s) {
+    s.p_error = (abs(l.corner) + abs(l.edge_u) + abs(l.edge_v)) * gamma_bound(7);
+    s.radiance = l.radiance;
+    if (!l.two_sided && dot(ref.p - l.corner, l.normal) <= 0.0f) return false;
+    if (rectangle_by_solid_angle(l, ref.p)) {
+        const SphericalRectangle r(l.corner, l.edge_u, l.edge_v, ref.p);
+        if (r.solid_angle > kMinSolidAngle) {
+            s.p = r.sample(u);
+            s.n = l.normal;
+            s.pdf = 1.0f / r.solid_angle;
+            s.wi = normalize(s.p - ref.p);
+            return true;
+        }
+    }
+    return from_area(ref.p, l.corner + l.edge_u * u.x + l.edge_v * u.y, l.normal, 1.0f / l.area, s);
+}
+
+bool sample(const DiscLight& l, const LightReference& ref, Vec2f u, LightSample& s) {
+    s.p_error = (abs(l.center) + Vec3f(l.radius)) * gamma_bound(8);
+    s.radiance = l.radiance;
+    if (!l.two_sided && dot(ref.p - l.center, l.normal) <= 0.0f) return false;
+    const Vec2f d = warp_disc_concentric(u);
+    const Vec3f p = l.center + Frame(l.normal).to_world({d.x * l.radius, d.y * l.radius, 0});
+    return from_area(ref.p, p, l.normal, 1.0f / (kPi * l.radius * l.radius), s);
+}
+
+// 1 - cos of the cone under which a sphere is seen; 0 from inside.
+float cone_of(const SphereLight& l, Vec3f p) {
+    const float d2 = length2(l.center - p), sin2 = l.radius * l.radius / d2;
+    if (!(sin2 < 0.9999f)) return 0.0f;
+    return sin2 / (1.0f + std::sqrt(1.0f - sin2));
+}
+
+bool sample(const SphereLight& l, const LightReference& ref, Vec2f u, LightSample& s) {
+    s.p_error = (abs(l.center) + Vec3f(l.radius)) * gamma_bound(16);
+    s.radiance = l.radiance;
+    const float one_minus_cos = cone_of(l, ref.p);
+    if (one_minus_cos == 0.0f) {  // inside, or nearly touching: by area
+        const Vec3f n = warp_sphere(u);
+        return from_area(ref.p, l.center + n * l.radius, n, 1.0f / (4.0f * kPi * l.radius * l.radius), s);
+    }
+    const Vec3f axis = l.center - ref.p;
+    const float d = length(axis);
+    const Vec3f local = warp_cone(u, one_minus_cos);
+    s.wi = Frame(axis / d).to_world(local);
+    // Nearest of the two crossings; the middle of the chord is the point closest to the centre.
+    const float half = safe_sqrt(l.radius * l.radius - d * d * (1.0f - local.z) * (1.0f + local.z));
+    s.p = ref.p + s.wi * (d * local.z - half);
+    s.n = normalize(s.p - l.center);
+    s.p = l.center + s.n * l.radius;
+    s.pdf = 1.0f / (2.0f * kPi * one_minus_cos);
+    return true;
+}
+
+bool sample(const MeshLight& l, const LightReference& ref, Vec2f u, LightSample& s) {
+    const AliasTable::Pick pick = l.pick.sample(u.x);
+    const MeshLight::Triangle& t = l.triangles[pick.index];
+    const Vec2f b = warp_triangle({pick.remainder, u.y});
+    s.material = t.material;
+    s.uv = t.ta + t.tab * b.x + t.tac * b.y;
+    s.p_error = (abs(t.a) + abs(t.ab) + abs(t.ac)) * gamma_bound(9);
+    return from_area(ref.p, t.a + t.ab * b.x + t.ac * b.y, normalize(cross(t.ab, t.ac)), l.density_of(t.material), s);
+}
+
+bool sample(const EnvironmentLight& l, const LightReference&, Vec2f u, LightSample& s) {
+    s.infinite = true;
+    if (l.width == 0) {
+        s.wi = warp_sphere(u);
+        s.pdf = 0.25f * kInvPi;
+        s.radiance = l.scale;
+        return true;
+    }
+    const Distribution2D::Sample t = l.table.sample(u);
+    s.wi = l.to_direction(t.uv);
+    const float sin_theta = std::sin(t.uv.y * kPi);
+    if (!(sin_theta > 0.0f)) return false;
+    s.pdf = t.pdf / (2.0f * kPi * kPi * sin_theta);
+    s.radiance = l.radiance(s.wi);
+    return s.pdf > 0.0f;
+}
+
+}  // namespace
+
+float SpotLight::falloff(float cos) const {
+    if (cos <= cos_outer) return 0.0f;
+    if (cos >= cos_inner) return 1.0f;
+    const float t = (cos - cos_outer) / (cos_inner - cos_outer);
+    return t * t * (3.0f - 2.0f * t);
+}
+
+float MeshLight::density_of(std::int32_t material) const {
+    for (const auto& [m, d] : density) {
+        if (m == material) return d;
+    }
+    return 0.0f;
+}
+
+bool sample_light(const Light& light, const LightReference& ref, Vec2f u, LightSample& out) noexcept {
+    return std::visit([&](const auto& l) { return sample(l, ref, u, out); }, light);
+}
+
+float light_pdf(const Light& light, const LightReference& ref, Vec3f wi, Vec3f p, Vec3f n,
+                std::int32_t material) noexcept {
+    if (const auto* l = std::get_if<QuadLight>(&light)) {
+        if (rectangle_by_solid_angle(*l, ref.p)) {
+            const SphericalRectangle r(l->corner, l->edge_u, l->edge_v, ref.p);
+            if (r.solid_angle > kMinSolidAngle) return 1.0f / r.solid_angle;
+        }
+        return distance2_over_cos(ref.p, p, n, wi) / l->area;
+    }
+    if (const auto* l = std::get_if<SphereLight>(&light)) {
+        const float one_minus_cos = cone_of(*l, ref.p);
+        if (one_minus_cos > 0.0f) return 1.0f / (2.0f * kPi * one_minus_cos);
+        return distance2_over_cos(ref.p, p, n, wi) / (4.0f * kPi * l->radius * l->radius);
+    }
+    if (const auto* l = std::get_if<DiscLight>(&light)) {
+        return distance2_over_cos(ref.p, p, n, wi) / (kPi * l->radius * l->radius);
+    }
+    if (const auto* l = std::get_if<MeshLight>(&light)) {
+        return distance2_over_cos(ref.p, p, n, wi) * l->density_of(material);
+    }
+    return 0.0f;
+}
+
+Color light_radiance(const Light& light, Vec3f wi, Vec3f n) noexcept {
+    const bool front = dot(wi, n) < 0.0f;
+    if (const auto* l = std::get_if<QuadLight>(&light)) return front || l->two_sided ? l->radiance : Color(0.0f);
+    if (const auto* l = std::get_if<DiscLight>(&light)) return front || l->two_sided ? l->radiance : Color(0.0f);
+    if (const auto* l = std::get_if<SphereLight>(&light)) return l->radiance;
+    return Color(0.0f);
+}
+
+}  // namespace tessera

@@ -1,0 +1,125 @@
+#pragma once
+// Emitters as values. Positions are in the scene's own space, radiance in W/m^2/sr in the working space.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "renderer/core/distribution.h"
+#include "renderer/core/frame.h"
+#include "renderer/core/vec.h"
+
+namespace tessera {
+
+/// A direction toward a light from some point, with what is needed to test that nothing is between.
+struct LightSample {
+    Vec3f wi;                // unit
+    Color radiance;          // arriving along wi if nothing is between; for delta lights the irradiance a surface
+                             // facing wi would get
+    float pdf = 0;           // per solid angle, the choice of the light included; for delta lights that choice alone
+    bool delta = false;
+    bool infinite = false;   // no point: the light is at infinity
+    Vec3f p, p_error, n;     // point on the light, its error bound, its normal (zero for points)
+    std::int32_t material = -1;  // >= 0: radiance comes from this material's emission at uv
+    Vec2f uv;
+};
+
+/// Where light is wanted: reduced to what a light may depend on.
+struct LightReference {
+    Vec3f p;
+};
+
+struct PointLight {
+    Vec3f position;
+    Color intensity;
+};
+
+struct SpotLight {
+    Vec3f position, direction;
+    Color intensity;
+    float cos_outer = 0, cos_inner = 0;
+    float falloff(float cos) const;
+};
+
+struct DistantLight {
+    Vec3f to_light;             // unit
+    Color irradiance;
+    float one_minus_cos = 0;    // of the half angle; 0: a delta light
+    Color radiance{0.0f};
+    bool camera_visible = true;
+};
+
+struct QuadLight {
+    Vec3f corner, edge_u, edge_v, normal;
+    Color radiance;
+    float area = 0;
+    bool rectangle = false;     // right angles: sampled by solid angle
+    bool two_sided = false;
+};
+
+struct DiscLight {
+    Vec3f center, normal;
+    float radius = 1;
+    Color radiance;
+    bool two_sided = false;
+};
+
+struct SphereLight {
+    Vec3f center;
+    float radius = 1;
+    Color radiance;
+};
+
+/// The emissive faces of one placed mesh; emits from both sides.
+struct MeshLight {
+    struct Triangle {
+        Vec3f a, ab, ac;
+        Vec2f ta, tab, tac;
+        std::int32_t material;
+    };
+    std::vector<Triangle> triangles;
+    AliasTable pick;
+    std::vector<std::pair<std::int32_t, float>> density;  // material -> pdf per area
+    float density_of(std::int32_t material) const;
+};
+
+/// A lat-long map or a constant all around.
+struct EnvironmentLight {
+    int width = 0, height = 0;         // 0: constant
+    std::vector<Color> texels;         // row 0 is up (+y)
+    Color scale{1.0f};
+    float cos_rotate = 1, sin_rotate = 0;
+    Distribution2D table;
+    bool camera_visible = true;
+
+    Color radiance(Vec3f d) const;
+    float pdf(Vec3f d) const;
+    Vec2f to_uv(Vec3f d) const;
+    Vec3f to_direction(Vec2f uv) const;
+};
+
+using Light = std::variant<PointLight, SpotLight, DistantLight, QuadLight, DiscLight, SphereLight, MeshLight,
+                           EnvironmentLight>;
+
+/// pdf without the choice of the light; nothing when the light cannot be seen from there.
+bool sample_light(const Light& light, const LightReference& ref, Vec2f u, LightSample& out) noexcept;
+
+/// pdf per solid angle with which sample_light makes the direction wi from ref to the point p with normal n on a
+/// light that a ray has hit (area lights). material: of the face, for mesh lights.
+float light_pdf(const Light& light, const LightReference& ref, Vec3f wi, Vec3f p, Vec3f n,
+                std::int32_t material) noexcept;
+
+/// Radiance leaving an area light's body toward -wi from a point with normal n.
+Color light_radiance(const Light& light, Vec3f wi, Vec3f n) noexcept;
+
+/// Solid angle of a rectangle, precise for > kMinSolidAngle; below that the caller samples by area.
+inline constexpr float kMinSolidAngle = 0.05f;
+
+EnvironmentLight make_constant_environment(Color radiance, bool camera_visible);
+/// texels: width x height RGB from the top. Sanitised by the caller.
+EnvironmentLight make_environment(int width, int height, std::vector<Color> texels, Color scale, double rotate_deg,
+                                  bool camera_visible);
+
+}  // namespace tessera

@@ -1,0 +1,55 @@
+#pragma once
+// All lights of a scene: which one to ask, with what probability.
+
+#include <cstdint>
+#include <vector>
+
+#include "renderer/lights/light.h"
+
+namespace tessera {
+
+class LightSet {
+public:
+    LightSet() = default;
+    /// powers: estimates in watts (any common unit); lights of power 0 are never chosen.
+    LightSet(std::vector<Light> lights, const std::vector<double>& powers);
+
+    bool empty() const noexcept { return lights_.empty(); }
+    /// Whether sample() can find anything: false if all light is a constant sky or there is none.
+    bool sampled() const noexcept { return sampled_ > 0; }
+    /// Whether a ray can run into a light: false if all are points or have no angle.
+    bool hittable() const noexcept { return hittable_; }
+    int size() const noexcept { return static_cast<int>(lights_.size()); }
+    const Light& operator[](int i) const noexcept { return lights_[i]; }
+
+    /// Chooses a light by u_choice and samples it; out.pdf includes the choice.
+    bool sample(const LightReference& ref, float u_choice, Vec2f u, LightSample& out) const noexcept;
+    /// Density of sample() for a point of light `index` that a ray from ref has hit.
+    float pdf(int index, const LightReference& ref, Vec3f wi, Vec3f p, Vec3f n, std::int32_t material) const noexcept;
+
+    /// Light from infinity along d, for a ray that hit nothing. bsdf_pdf: density that made the ray, 0 if light
+    /// sampling could not have made it (camera, delta): the result is weighted by the power heuristic.
+    Color escaped(Vec3f d, float bsdf_pdf, bool camera) const noexcept;
+    /// Unweighted, for the ray tree.
+    Color background(Vec3f d) const noexcept { return escaped(d, 0.0f, true); }
+
+    /// Mean radiance of the surroundings: the ambient light of a ray tree.
+    Color ambient() const noexcept { return ambient_; }
+
+    std::size_t bytes() const noexcept;
+
+private:
+    float probability(int i) const noexcept { return sampled_ > 0 ? choice_.probability(i) : 0.0f; }
+
+    std::vector<Light> lights_;
+    AliasTable choice_;
+    int sampled_ = 0;  // lights of positive power
+    bool hittable_ = false;
+    Color ambient_{0.0f};
+    std::vector<int> infinite_;  // lights that an escaping ray may see
+};
+
+/// Estimate of the power that reaches a scene of the given radius.
+double light_power(const Light& light, double scene_radius, double mesh_emission = 0);
+
+}  // namespace tessera

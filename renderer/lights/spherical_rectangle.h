@@ -1,0 +1,21 @@
+#pragma once
+// Uniform sampling of the solid angle of a rectangle.
+// Urena, Fajardo, King, "An Area-Preserving Parametrization for Spherical Rectangles", EGSR 2013.
+
+#include "renderer/core/vec.h"
+
+namespace tessera {
+
+struct SphericalRectangle {
+    Vec3f o, x, y, z;
+    float x0, y0, z0, x1, y1;
+    float b0, b1, k;
+    float solid_angle;
+
+    /// corner, perpendicular edges; o: the point that looks.
+    SphericalRectangle(Vec3f corner, Vec3f edge_u, Vec3f edge_v, Vec3f o);
+    /// A point on the rectangle.
+    Vec3f sample(Vec2f u) const;
+};
+
+}  // namespace tessera

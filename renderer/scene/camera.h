@@ -1,0 +1,35 @@
+#pragma once
+// From a point on the film to a ray. In the scene's own space.
+
+#include "renderer/api/scene_desc.h"
+#include "renderer/core/ray.h"
+
+namespace tessera {
+
+struct CameraRay {
+    Ray ray;
+    float cone_width = 0;   // footprint at the origin, scene units
+    float cone_spread = 0;  // full angle of a pixel, radians
+};
+
+class Camera {
+public:
+    Camera() = default;
+    /// origin: where the scene's own space lies in the world. bounds: of the scene, for automatic framing, in the
+    /// scene's space. Throws Error for a camera that cannot be.
+    Camera(const CameraDesc& desc, int width, int height, Vec3d origin, Vec3d bounds_min, Vec3d bounds_max);
+
+    /// film: pixels, y downward, (0, 0) the top left corner. lens: unit square.
+    CameraRay ray(Vec2f film, Vec2f lens) const noexcept;
+    bool has_lens() const noexcept { return aperture_ > 0.0f; }
+    Vec3f position() const noexcept { return position_; }
+    Vec3f forward() const noexcept { return forward_; }
+
+private:
+    Vec3f position_, right_, up_, forward_;  // right_ and up_ scaled to half the film at distance 1 (or in units)
+    float to_x_ = 0, to_y_ = 0;              // 2 / resolution
+    float aperture_ = 0, focus_ = 1, spread_ = 0, footprint_ = 0;
+    bool orthographic_ = false;
+};
+
+}  // namespace tessera

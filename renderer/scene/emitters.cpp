@@ -1,0 +1,236 @@
+#include "renderer/scene/emitters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "renderer/image/image_io.h"
+
+namespace tessera {
+namespace {
+
+constexpr double kPiD = 3.14159265358979323846;
+
+Color color_of(Float3 c) { return {c[0], c[1], c[2]}; }
+
+struct EmitterBuilder {
+    const EmitterInput& in;
+    Geometry& geometry;
+    std::vector<Light> lights;
+    std::vector<double> powers;
+
+    double radius() const { return 0.5 * length(in.bounds_max - in.bounds_min); }
+    Vec3f point(const Double3& p) const { return Vec3f(Vec3d(p) - in.origin); }
+    int next() const { return static_cast<int>(lights.size()); }
+
+    void add(Light light, double mesh_emission = 0) {
+        powers.push_back(light_power(light, radius(), mesh_emission));
+        lights.push_back(std::move(light));
+    }
+
+    void place_body(PlacedKind kind, std::size_t shape, bool visible) {
+        Placement placed;
+        placed.kind = kind;
+        placed.shape = static_cast<std::uint32_t>(shape);
+        placed.light = next();
+        placed.camera_visible = visible;
+        geometry.placements.push_back(placed);
+    }
+
+    void described(const LightDesc& desc) {
+        std::visit([&](const auto& l) { make(l, desc); }, desc.shape);
+    }
+
+    void make(const PointLightDesc& l, const LightDesc&) { add(PointLight{point(l.position), color_of(l.intensity)}); }
+
+    void make(const SpotLightDesc& l, const LightDesc&) {
+        SpotLight s;
+        s.position = point(l.position);
+        s.direction = Vec3f(normalize(Vec3d(l.direction)));
+        s.intensity = color_of(l.intensity);
+        s.cos_outer = static_cast<float>(std::cos(l.cone_deg * kPiD / 180));
+        s.cos_inner = static_cast<float>(std::cos(l.cone_deg * (1 - l.blend) * kPiD / 180));
+        add(s);
+    }
+
+    void make(const DistantLightDesc& l, const LightDesc& desc) {
+        DistantLight d;
+        d.to_light = Vec3f(-normalize(Vec3d(l.direction)));
+        d.irradiance = color_of(l.irradiance);
+        d.camera_visible = desc.visible;
+        const double half = 0.5 * l.angle_deg * kPiD / 180;
+        if (half > 0) {
+            // 1 - cos by the half angle's sine, which keeps its digits; E = L pi sin^2 on a facing surface.
+            d.one_minus_cos = static_cast<float>(2 * std::sin(half / 2) * std::sin(half / 2));
+            d.radiance = d.irradiance * static_cast<float>(1 / (kPiD * std::sin(half) * std::sin(half)));
+        }
+        add(d);
+    }
+
+    void make(const QuadLightDesc& l, const LightDesc& desc) {
+        const Vec3d u(l.edges[0]), v(l.edges[1]), n = cross(u, v);
+        const double area = length(n);
+        if (!(area > 0)) {
+            in.problems.error(desc.loc, fmt::format("light '{}': the edges are parallel or zero, the quad has no area", desc.name));
+            return;
+        }
+        QuadLight q;
+        q.corner = point(l.corner);
+        q.edge_u = Vec3f(u);
+        q.edge_v = Vec3f(v);
+        q.normal = Vec3f(n / area);
+        q.area = static_cast<float>(area);
+        q.radiance = color_of(l.radiance);
+        q.rectangle = std::abs(dot(u, v)) < 1e-6 * length(u) * length(v);
+        q.two_sided = l.two_sided;
+        Mesh body;
+        body.positions = {q.corner, q.corner + q.edge_u, q.corner + q.edge_u + q.edge_v, q.corner + q.edge_v, {}};
+        body.position_index = {0, 1, 2, 3};
+        body.quads = 1;
+        body.parts = {{0, 1, true, false}};
+        body.materials = {-1};
+        place_body(PlacedKind::mesh, geometry.meshes.size(), desc.visible);
+        geometry.meshes.push_back(std::move(body));
+        add(q);
+    }
+
+    void make(const DiscLightDesc& l, const LightDesc& desc) {
+        const DiscLight d{point(l.center), Vec3f(normalize(Vec3d(l.normal))), static_cast<float>(l.radius), color_of(l.radiance), l.two_sided};
+        place_body(PlacedKind::disc, geometry.discs.size(), desc.visible);
+        geometry.discs.push_back({d.center, d.normal, d.radius, -1});
+        add(d);
+    }
+
+    void make(const SphereLightDesc& l, const LightDesc& desc) {
+        const SphereLight s{point(l.center), static_cast<float>(l.radius), color_of(l.radiance)};
+        place_body(PlacedKind::sphere, geometry.spheres.size(), desc.visible);
+        geometry.spheres.push_back({s.center, s.radius, -1});
+        add(s);
+    }
+
+    // Emissive materials on shapes.
+    void surfaces(std::size_t placements) {
+        for (std::size_t i = 0; i < placements; ++i) {
+            Placement& placed = geometry.placements[i];
+            if (placed.kind == PlacedKind::mesh) {
+                mesh_light(placed);
+            } else {
+                const std::int32_t own = placed.kind == PlacedKind::sphere ? geometry.spheres[placed.shape].material : geometry.discs[placed.shape].material;
+                quadric_light(placed, placed.material >= 0 ? placed.material : own);
+            }
+        }
+    }
+
+    void quadric_light(Placement& placed, std::int32_t material) {
+        const ShaderProgram& program = in.programs[material];
+        // A textured or stretched emitter is left to the rays that find it by chance.
+        if (!program.facts().emissive || program.facts().textured || placed.instanced) return;
+        const Color radiance = program.mean_emission(in.textures);
+        placed.light = next();
+        if (placed.kind == PlacedKind::sphere) {
+            const Sphere& s = geometry.spheres[placed.shape];
+            add(SphereLight{s.center, s.radius, radiance});
+        } else {
+            const Disc& d = geometry.discs[placed.shape];
+            add(DiscLight{d.center, d.normal, d.radius, radiance, true});
+        }
+    }
+
+    void mesh_light(Placement& placed) {
+        const Mesh& mesh = geometry.meshes[placed.shape];
+        const auto material_of = [&](std::uint32_t face) {
+            return placed.material >= 0 ? placed.material : mesh.materials[mesh.material_slot(face)];
+        };
+        const auto emits = [&](std::int32_t m) { return m >= 0 && in.programs[m].facts().emissive; };
+        if (placed.material >= 0 ? !emits(placed.material) : std::none_of(mesh.materials.begin(), mesh.materials.end(), emits)) return;
+        MeshLight light;
+        std::vector<double> weights;
+        double emission = 0;
+        for (std::uint32_t face = 0; face < mesh.faces(); ++face) {
+            const std::int32_t m = material_of(face);
+            if (!emits(m)) continue;
+            const double brightness = static_cast<double>(luminance(in.programs[m].mean_emission(in.textures)));
+            if (!(brightness > 0)) continue;
+            add_face(placed, mesh, face, m, light, [&](double area) {
+                weights.push_back(area * brightness);
+                emission += area * brightness;
+            });
+        }
+        if (light.triangles.empty()) return;
+        for (const auto& t : light.triangles) {
+            if (light.density_of(t.material) > 0.0f) continue;
+            const double brightness = static_cast<double>(luminance(in.programs[t.material].mean_emission(in.textures)));
+            light.density.push_back({t.material, static_cast<float>(brightness / emission)});
+        }
+        light.pick = AliasTable(weights);
+        placed.light = next();
+        add(std::move(light), emission);
+    }
+
+    template <class Added>
+    void add_face(const Placement& placed, const Mesh& mesh, std::uint32_t face, std::int32_t m, MeshLight& light, Added added) {
+        const std::size_t first = mesh.corner(face);
+        const bool quad = face >= mesh.triangles;
+        constexpr int kQuadHalves[2][3] = {{0, 1, 3}, {2, 3, 1}};
+        constexpr int kTriangle[3] = {0, 1, 2};
+        for (int half = 0; half < (quad ? 2 : 1); ++half) {
+            const int* k = quad ? kQuadHalves[half] : kTriangle;
+            Vec3f p[3];
+            Vec2f t[3];
+            for (int c = 0; c < 3; ++c) {
+                const Vec3f q = mesh.positions[mesh.position_index[first + k[c]]];
+                p[c] = placed.instanced ? placed.to_world.point(q) : q;
+                if (!mesh.uvs.empty()) t[c] = mesh.uvs[(mesh.uv_index.empty() ? mesh.position_index : mesh.uv_index)[first + k[c]]];
+            }
+            const double area = 0.5 * length(cross(Vec3d(p[1]) - Vec3d(p[0]), Vec3d(p[2]) - Vec3d(p[0])));
+            if (!(area > 0)) continue;
+            light.triangles.push_back({p[0], p[1] - p[0], p[2] - p[0], t[0], t[1] - t[0], t[2] - t[0], m});
+            added(area);
+        }
+    }
+
+    void environment(const EnvironmentDesc& desc) {
+        if (desc.file.empty()) {
+            if (max_component(color_of(desc.radiance)) > 0.0f) add(make_constant_environment(color_of(desc.radiance), desc.visible));
+            return;
+        }
+        Image image;
+        try {
+            image = read_image(desc.file);
+        } catch (const Error& e) {
+            in.problems.error(desc.loc, fmt::format("environment: {}", e.what()));
+            return;
+        }
+        std::vector<Color> texels(std::size_t(image.width) * image.height);
+        std::size_t bad = 0;
+        for (std::size_t i = 0; i < texels.size(); ++i) {
+            const float* p = &image.pixels[i * image.channels];
+            Color c = image.channels >= 3 ? Color{p[0], p[1], p[2]} : Color(p[0]);
+            if (!is_finite(c) || min_component(c) < 0.0f) {
+                ++bad;
+                c = is_finite(c) ? max(c, Color(0.0f)) : Color(0.0f);
+            }
+            texels[i] = c;
+        }
+        if (bad > 0) in.problems.warn(desc.loc, fmt::format("environment '{}': {} texels are not finite or negative, taken as 0", desc.file, bad));
+        const bool eight_bit = !image_info(desc.file).is_float;
+        static_assert(sizeof(Color) == 3 * sizeof(float));
+        in.colors->to_working({&texels[0].x, texels.size() * 3}, desc.color_space.empty() && eight_bit ? "srgb_texture" : desc.color_space);
+        for (Color& c : texels) c = is_finite(c) ? max(c, Color(0.0f)) : Color(0.0f);
+        add(make_environment(image.width, image.height, std::move(texels), color_of(desc.radiance), desc.rotate_deg, desc.visible));
+    }
+};
+
+}  // namespace
+
+LightSet make_emitters(const EmitterInput& in, Geometry& geometry) {
+    EmitterBuilder b{in, geometry, {}, {}};
+    b.surfaces(geometry.placements.size());
+    for (const LightDesc& light : in.desc.lights) b.described(light);
+    if (in.desc.environment) b.environment(*in.desc.environment);
+    return LightSet(std::move(b.lights), b.powers);
+}
+
+}  // namespace tessera

@@ -1,0 +1,61 @@
+#pragma once
+// The scene ready to trace. Immutable once built; shared between threads.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "materials/program.h"
+#include "renderer/api/render.h"
+#include "renderer/geometry/accel.h"
+#include "renderer/geometry/interpolate.h"
+#include "renderer/image/colour_space.h"
+#include "renderer/lights/light_set.h"
+#include "renderer/scene/camera.h"
+#include "renderer/scene/features.h"
+
+namespace tessera {
+
+class Scene {
+public:
+    const Accel& accel() const noexcept { return *accel_; }
+    const Geometry& geometry() const noexcept { return geometry_; }
+    const Camera& camera() const noexcept { return camera_; }
+    const LightSet& lights() const noexcept { return lights_; }
+    const ShaderProgram& program(int material) const noexcept { return programs_[material]; }
+    const TextureStore* textures() const noexcept { return textures_.get(); }
+    /// Whether a ray can run into something that shines.
+    bool emission_can_be_hit() const noexcept { return emission_can_be_hit_; }
+    const Features& features() const noexcept { return features_; }
+    std::string_view kernel() const noexcept { return kernel_; }
+    const FilmDesc& film() const noexcept { return film_; }
+    const RenderDesc& settings() const noexcept { return settings_; }
+    /// Where this space's origin lies in the world, for the P pass.
+    Vec3d origin() const noexcept { return origin_; }
+    Vec3d bounds_min() const noexcept { return bounds_min_; }
+    Vec3d bounds_max() const noexcept { return bounds_max_; }
+    /// Hash of the description, for the file's header.
+    const std::string& hash() const noexcept { return hash_; }
+    /// Statistics of the build, to which a render adds its own.
+    const Statistics& statistics() const noexcept { return statistics_; }
+
+private:
+    friend class SceneBuilder;
+    Geometry geometry_;
+    std::vector<ShaderProgram> programs_;
+    std::unique_ptr<ColorSpaces> colors_;
+    std::unique_ptr<TextureStore> textures_;
+    LightSet lights_;
+    bool emission_can_be_hit_ = false;
+    Camera camera_;
+    std::unique_ptr<Accel> accel_;
+    Features features_;
+    std::string kernel_;
+    FilmDesc film_;
+    RenderDesc settings_;
+    Vec3d origin_, bounds_min_, bounds_max_;
+    std::string hash_;
+    Statistics statistics_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,70 @@
+"""--stats: the file is JSON, fits its schema, and its numbers agree with the scene."""
+
+import json
+import unittest
+
+from support import SCENE_TOML, SOURCE, TesseraTest
+
+try:
+    import jsonschema
+except ImportError:
+    jsonschema = None
+
+SCHEMA = SOURCE / "docs" / "stats.schema.json"
+
+
+class Stats(TesseraTest):
+    def statistics(self, *args, toml=SCENE_TOML):
+        self.write_scene(toml)
+        self.expect(0, "render", "scene.toml", "-o", "out.exr", "--stats", "stats.json", *args)
+        return json.loads((self.folder / "stats.json").read_text(), parse_constant=self.fail)
+
+    @unittest.skipUnless(jsonschema, "python3-jsonschema is not installed")
+    def test_fits_the_schema(self):
+        schema = json.loads(SCHEMA.read_text())
+        jsonschema.validators.validator_for(schema).check_schema(schema)
+        # A schema that requires nothing would accept anything.
+        self.assertTrue(schema.get("required"))
+        jsonschema.validate(self.statistics(), schema)
+
+    def test_has_what_a_farm_looks_for(self):
+        text = json.dumps(self.statistics("--spp", "3", "-t", "1")).lower()
+        for word in (
+            "version scene threads tile spp load build render write camera bounce shadow triangles instance "
+            "geometry bvh texture film invalid left_out"
+        ).split():
+            self.assertIn(word, text)
+
+    def test_camera_rays_are_pixels_times_samples(self):
+        def camera_rays(tree):
+            for key, value in tree.items():
+                if key.startswith("camera") and isinstance(value, int):
+                    yield value
+                elif isinstance(value, dict):
+                    yield from camera_rays(value)
+
+        self.assertIn(48 * 32 * 3, list(camera_rays(self.statistics("--spp", "3"))))
+
+    def test_counts_do_not_depend_on_threads(self):
+        def counts(tree, path=""):
+            if isinstance(tree, dict):
+                for key, value in tree.items():
+                    yield from counts(value, f"{path}/{key}")
+            elif isinstance(tree, int) and any(word in path for word in ("camera", "bounce", "shadow", "triangles")):
+                yield path, tree
+
+        one, two = dict(counts(self.statistics("-t", "1"))), dict(counts(self.statistics("-t", "2")))
+        self.assertTrue(one)
+        self.assertEqual(
+            {path: n for path, n in one.items() if "per_s" not in path},
+            {path: n for path, n in two.items() if "per_s" not in path},
+        )
+
+    def test_a_failed_scene_writes_no_statistics(self):
+        self.write("bad.toml", "tessera = 1\n[camera\n")
+        self.expect(3, "render", "bad.toml", "-o", "out.exr", "--stats", "stats.json")
+        self.assertEqual(self.files(), ["bad.toml"])
+
+
+if __name__ == "__main__":
+    unittest.main()
