@@ -43,6 +43,8 @@ inline Affined affine_from_rows(const std::array<double, 12>& m) {
     return {{m[0], m[4], m[8]}, {m[1], m[5], m[9]}, {m[2], m[6], m[10]}, {m[3], m[7], m[11]}};
 }
 
+inline Affined translation(Vec3d by) { return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, by}; }
+
 /// Inverse; the caller has checked that the determinant is not zero.
 inline Affined inverse(const Affined& a) {
     const double d = 1.0 / a.determinant();

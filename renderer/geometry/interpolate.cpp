@@ -19,13 +19,15 @@ Corners corners_of(const Mesh& mesh, std::uint32_t face, float u, float v) {
 }
 
 // Moves a point's data from the shape's space to the scene's, with the error that the map adds (PBRT 4e, eq. 6.29 ff).
-void to_world(const Affinef& m, SurfacePoint& s) {
+void to_world(const Placement& placed, SurfacePoint& s) {
+    const Affinef& m = placed.to_world;
     const Vec3f p = s.p;
     s.p = m.point(p);
     const Vec3f magnitude = abs(m.x) * std::fabs(p.x) + abs(m.y) * std::fabs(p.y) + abs(m.z) * std::fabs(p.z) + abs(m.p);
     const Vec3f carried = abs(m.x) * s.p_error.x + abs(m.y) * s.p_error.y + abs(m.z) * s.p_error.z;
-    // Embree takes the ray into the shape's space, which costs about as much again as taking the point out of it.
-    s.p_error = carried * (1.0f + gamma_bound(3)) + magnitude * (2.0f * gamma_bound(4));
+    // Embree takes the ray into the shape's space; what it rounds there comes back grown by the map's condition.
+    s.p_error = carried * (1.0f + gamma_bound(3)) + magnitude * gamma_bound(4) +
+                Vec3f(max_component(magnitude) * placed.condition * gamma_bound(2));
     s.ng = normalize(m.normal(s.ng));
     const Vec3f n = m.normal(s.ns);
     s.ns = normalize(n);
@@ -39,9 +41,10 @@ void mesh_point(const Mesh& mesh, std::uint32_t face, const Hit& hit, SurfaceNee
     const std::uint32_t ia = mesh.position_index[k.a], ib = mesh.position_index[k.b], ic = mesh.position_index[k.c];
     const Vec3f a = mesh.positions[ia], b = mesh.positions[ib], c = mesh.positions[ic];
     s.p = a * k.wa + b * k.wb + c * k.wc;
-    // The vertices' own size bounds both the rounding here (PBRT 4e, eq. 6.24) and Embree's, whose products are
-    // of differences of vertices.
-    s.p_error = (abs(a) + abs(b) + abs(c)) * gamma_bound(7);
+    // The rounding of the sum (PBRT 4e, eq. 6.24), and that of Embree's plane test, whose products are of
+    // differences between the vertices and the ray's origin: as large as the face, whatever the plane.
+    const float reach = std::sqrt(std::fmax(length2(a - s.p), std::fmax(length2(b - s.p), length2(c - s.p))));
+    s.p_error = (abs(a * k.wa) + abs(b * k.wb) + abs(c * k.wc)) * gamma_bound(7) + Vec3f(reach * gamma_bound(3));
     const Vec3f normal = cross(b - a, c - a);
     const float area2 = length(normal);
     s.ng = normal / area2;
@@ -91,7 +94,7 @@ void disc_point(const Disc& disc, const Ray& local, SurfacePoint& s) {
     const Vec3d p = Vec3d(local.o) + d * (dot(co, n) / dot(d, n));
     s.p = Vec3f(p);
     s.ng = s.ns = disc.normal;
-    s.p_error = (abs(disc.center) + Vec3f(disc.radius)) * gamma_bound(8);
+    s.p_error = abs(disc.center) * gamma_bound(8) + Vec3f(disc.radius * gamma_bound(8));
     const Frame frame(disc.normal);
     const Vec3f q = Vec3f(p - Vec3d(disc.center));
     s.uv = {0.5f + 0.5f * dot(q, frame.s) / disc.radius, 0.5f + 0.5f * dot(q, frame.t) / disc.radius};
@@ -129,7 +132,7 @@ SurfacePoint surface_point(const Geometry& geometry, const HitTarget& target, co
         }
     }
     if (placed.material >= 0) s.material = placed.material;
-    if (placed.instanced) to_world(placed.to_world, s);
+    if (placed.instanced) to_world(placed, s);
     if (dot(s.ns, s.ng) < 0.0f) s.ns = -s.ns;
     return s;
 }

@@ -66,6 +66,10 @@ struct Placement {
     PlacedKind kind = PlacedKind::mesh;
     bool instanced = false;
     bool camera_visible = true;
+    float condition = 1;             // of to_world: how much a rounding on the way in grows on the way out
+
+    /// Places through an Embree instance.
+    void instance_at(const Affined& to_world);
 };
 
 /// Everything that can be hit.

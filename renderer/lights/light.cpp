@@ -70,7 +70,7 @@ bool sample(const DistantLight& l, const LightReference&, Vec2f u, LightSample& 
 }
 
 bool sample(const QuadLight& l, const LightReference& ref, Vec2f u, LightSample& s) {
-    s.p_error = (abs(l.corner) + abs(l.edge_u) + abs(l.edge_v)) * gamma_bound(7);
+    s.p_error = abs(l.corner) * gamma_bound(7) + Vec3f((length(l.edge_u) + length(l.edge_v)) * gamma_bound(7));
     s.radiance = l.radiance;
     if (!l.two_sided && dot(ref.p - l.corner, l.normal) <= 0.0f) return false;
     if (rectangle_by_solid_angle(l, ref.p)) {
@@ -129,7 +129,7 @@ bool sample(const MeshLight& l, const LightReference& ref, Vec2f u, LightSample&
     const Vec2f b = warp_triangle({pick.remainder, u.y});
     s.material = t.material;
     s.uv = t.ta + t.tab * b.x + t.tac * b.y;
-    s.p_error = (abs(t.a) + abs(t.ab) + abs(t.ac)) * gamma_bound(9);
+    s.p_error = abs(t.a) * gamma_bound(9) + Vec3f((length(t.ab) + length(t.ac)) * gamma_bound(7));
     return from_area(ref.p, t.a + t.ab * b.x + t.ac * b.y, normalize(cross(t.ab, t.ac)), l.density_of(t.material), s);
 }
 

@@ -133,7 +133,7 @@ private:
 
     void place_shape(const FlatInstance& i, ShapeUse& use, Placement& placed) {
         Geometry& g = scene_->geometry_;
-        const Affined to_scene = Affined({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, -scene_->origin_) * i.to_world;
+        const Affined to_scene = translation(-scene_->origin_) * i.to_world;
         placed.kind = i.kind == ShapeKind::mesh ? PlacedKind::mesh : (i.kind == ShapeKind::sphere ? PlacedKind::sphere : PlacedKind::disc);
         // Spheres and discs keep their form only under similarities; any other map goes through an instance.
         placed.instanced = use.count > 1 && i.kind == ShapeKind::mesh;
@@ -142,15 +142,15 @@ private:
             if (use.shape < 0) {
                 const Vec3d own_origin = placed.instanced ? mesh_center(desc_.meshes[i.index]) : Vec3d{};
                 use.own_origin = own_origin;
-                use.shape = bake(i.index, placed.instanced ? Affined({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, -own_origin) : to_scene, use);
+                use.shape = bake(i.index, placed.instanced ? translation(-own_origin) : to_scene, use);
             }
             placed.shape = static_cast<std::uint32_t>(use.shape);
-            if (placed.instanced) placed.to_world = Affinef(to_scene * Affined({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, use.own_origin));
+            if (placed.instanced) placed.instance_at(to_scene * translation(use.own_origin));
         } else if (i.kind == ShapeKind::sphere) {
             const SphereDesc& s = desc_.spheres[i.index];
             g.spheres.push_back(placed.instanced ? Sphere{{0, 0, 0}, static_cast<float>(s.radius), s.material}
                                                  : Sphere{Vec3f(to_scene.point(Vec3d(s.center))), static_cast<float>(s.radius * length(i.to_world.x)), s.material});
-            if (placed.instanced) placed.to_world = Affinef(to_scene * Affined({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, Vec3d(s.center)));
+            if (placed.instanced) placed.instance_at(to_scene * translation(Vec3d(s.center)));
             if (g.spheres.back().material < 0) g.spheres.back().material = default_material();
             placed.shape = static_cast<std::uint32_t>(g.spheres.size() - 1);
         } else {
@@ -158,7 +158,7 @@ private:
             const Vec3d n = normalize(Vec3d(d.normal));
             g.discs.push_back(placed.instanced ? Disc{{0, 0, 0}, Vec3f(n), static_cast<float>(d.radius), d.material}
                                                : Disc{Vec3f(to_scene.point(Vec3d(d.center))), Vec3f(normalize(to_scene.normal(n))), static_cast<float>(d.radius * length(i.to_world.x)), d.material});
-            if (placed.instanced) placed.to_world = Affinef(to_scene * Affined({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, Vec3d(d.center)));
+            if (placed.instanced) placed.instance_at(to_scene * translation(Vec3d(d.center)));
             if (g.discs.back().material < 0) g.discs.back().material = default_material();
             placed.shape = static_cast<std::uint32_t>(g.discs.size() - 1);
         }
