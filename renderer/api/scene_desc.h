@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <variant>
@@ -225,7 +224,6 @@ struct CameraDesc {
     double ortho_height = 2;         // scene units, orthographic only
     double aperture_radius = 0;      // thin lens, scene units; 0 = pinhole
     double focus_distance = 0;       // 0 = distance to look_at
-    double near_clip = 0;
 };
 
 enum class PixelFilter : std::uint8_t { box, triangle, gaussian, blackman_harris };
@@ -261,7 +259,6 @@ struct RenderDesc {
     int max_glossy_depth = 8;
     int max_transmission_depth = 12;
     int min_depth = 3;                // no Russian roulette before this many bounces
-    double ray_length_max = std::numeric_limits<double>::infinity();
 };
 
 struct SceneDesc {

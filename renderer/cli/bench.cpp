@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "renderer/cli/commands.h"
+#include "renderer/cli/console.h"
 #include "renderer/cli/scene_options.h"
 #include "renderer/core/log.h"
 #include "renderer/integrator/replay.h"
@@ -43,16 +44,18 @@ int run_bench(const BenchOptions& o) {
         ratio.push_back(r.stats.render_s / t.seconds);
     }
     const double s = median(render_s);
-    fmt::print("scene      {} at {}x{}, {} spp, {} threads, tile {}, kernel {}\n", stats.scene, stats.width, stats.height, stats.spp, stats.threads, stats.tile, stats.kernel);
-    fmt::print("render     {:.3f} s (min {:.3f}, max {:.3f}, {} runs)\n", s, *std::min_element(render_s.begin(), render_s.end()), *std::max_element(render_s.begin(), render_s.end()), o.repeats);
-    fmt::print("samples/s  {:.3f} M\n", static_cast<double>(stats.samples) / s * 1e-6);
-    fmt::print("rays/s     {:.3f} M (per sample: camera {:.2f}, bounce {:.2f}, shadow {:.2f})\n", static_cast<double>(stats.rays.total()) / s * 1e-6,
+    std::string text;
+    text += fmt::format("scene      {} at {}x{}, {} spp, {} threads, tile {}, kernel {}\n", stats.scene, stats.width, stats.height, stats.spp, stats.threads, stats.tile, stats.kernel);
+    text += fmt::format("render     {:.3f} s (min {:.3f}, max {:.3f}, {} runs)\n", s, *std::min_element(render_s.begin(), render_s.end()), *std::max_element(render_s.begin(), render_s.end()), o.repeats);
+    text += fmt::format("samples/s  {:.3f} M\n", static_cast<double>(stats.samples) / s * 1e-6);
+    text += fmt::format("rays/s     {:.3f} M (per sample: camera {:.2f}, bounce {:.2f}, shadow {:.2f})\n", static_cast<double>(stats.rays.total()) / s * 1e-6,
                static_cast<double>(stats.rays.camera) / static_cast<double>(stats.samples), static_cast<double>(stats.rays.bounce) / static_cast<double>(stats.samples),
                static_cast<double>(stats.rays.shadow) / static_cast<double>(stats.samples));
     if (o.replay) {
-        fmt::print("embree     {:.3f} s for the same rays\n", median(replay_s));
-        fmt::print("traversal ratio {:.3f} (min {:.3f}, max {:.3f})\n", median(ratio), *std::min_element(ratio.begin(), ratio.end()), *std::max_element(ratio.begin(), ratio.end()));
+        text += fmt::format("embree     {:.3f} s for the same rays\n", median(replay_s));
+        text += fmt::format("traversal ratio {:.3f} (min {:.3f}, max {:.3f})\n", median(ratio), *std::min_element(ratio.begin(), ratio.end()), *std::max_element(ratio.begin(), ratio.end()));
     }
+    print_out(text);
     return 0;
 }
 

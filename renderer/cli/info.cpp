@@ -1,10 +1,11 @@
 #include <CLI/CLI.hpp>
-#include <cstdio>
+#include <iterator>
 #include <memory>
 
 #include <fmt/format.h>
 
 #include "renderer/cli/commands.h"
+#include "renderer/cli/console.h"
 #include "renderer/cli/scene_options.h"
 #include "renderer/cli/progress.h"
 #include "renderer/scene/scene.h"
@@ -14,23 +15,26 @@ namespace {
 
 std::string mib(std::uint64_t bytes) { return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1 << 20)); }
 
-void print(const Scene& scene) {
+std::string text_of(const Scene& scene) {
+    std::string text;
+    const auto add = std::back_inserter(text);
     const Statistics s = describe(scene);
     const Vec3d size = scene.bounds_max() - scene.bounds_min();
-    fmt::print("{}\n", s.scene);
-    fmt::print("  picture    {} x {}, {} samples per pixel, integrator {}\n", s.width, s.height, s.spp, s.integrator);
-    fmt::print("  geometry   {} triangles stored, {} instanced, {} instances\n", s.triangles_stored, s.triangles_instanced, s.instances);
-    fmt::print("  size       {:.6g} x {:.6g} x {:.6g}", size.x, size.y, size.z);
+    fmt::format_to(add, "{}\n", s.scene);
+    fmt::format_to(add, "  picture    {} x {}, {} samples per pixel, integrator {}\n", s.width, s.height, s.spp, s.integrator);
+    fmt::format_to(add, "  geometry   {} triangles stored, {} instanced, {} instances\n", s.triangles_stored, s.triangles_instanced, s.instances);
+    fmt::format_to(add, "  size       {:.6g} x {:.6g} x {:.6g}", size.x, size.y, size.z);
     const Vec3d o = scene.origin();
-    if (!(o == Vec3d{})) fmt::print(", traced about ({:.17g}, {:.17g}, {:.17g})", o.x, o.y, o.z);
-    fmt::print("\n  lights     {}\n", s.lights);
-    fmt::print("  memory     geometry {}, BVH {}, textures {}, lights {}\n", mib(s.memory_geometry), mib(s.memory_bvh), mib(s.memory_textures), mib(s.memory_lights));
-    fmt::print("  kernel     {} (Embree {}, {})\n", s.kernel, Accel::version(), s.isa);
-    fmt::print("  hash       {}\n", scene.hash());
-    fmt::print("left out\n");
-    for (const LeftOut& l : s.left_out) fmt::print("  {:<20} {}\n", l.what, l.why);
-    for (const std::string& n : s.notes) fmt::print("note: {}\n", n);
-    for (const std::string& w : s.warnings) fmt::print("warning: {}\n", w);
+    if (!(o == Vec3d{})) fmt::format_to(add, ", traced about ({:.17g}, {:.17g}, {:.17g})", o.x, o.y, o.z);
+    fmt::format_to(add, "\n  lights     {}\n", s.lights);
+    fmt::format_to(add, "  memory     geometry {}, BVH {}, textures {}, lights {}\n", mib(s.memory_geometry), mib(s.memory_bvh), mib(s.memory_textures), mib(s.memory_lights));
+    fmt::format_to(add, "  kernel     {} (Embree {}, {})\n", s.kernel, Accel::version(), s.isa);
+    fmt::format_to(add, "  hash       {}\n", scene.hash());
+    fmt::format_to(add, "left out\n");
+    for (const LeftOut& l : s.left_out) fmt::format_to(add, "  {:<20} {}\n", l.what, l.why);
+    for (const std::string& n : s.notes) fmt::format_to(add, "note: {}\n", n);
+    for (const std::string& w : s.warnings) fmt::format_to(add, "warning: {}\n", w);
+    return text;
 }
 
 }  // namespace
@@ -49,9 +53,9 @@ void add_info(CLI::App& app, CommandLine& line) {
                 Statistics s = describe(*scene);
                 s.load_s = load_s;
                 s.memory_peak = peak_memory();
-                std::fputs(to_json(s).c_str(), stdout);
+                print_out(to_json(s));
             } else {
-                print(*scene);
+                print_out(text_of(*scene));
             }
             return 0;
         };

@@ -7,7 +7,9 @@
 
 #include "renderer/api/error.h"
 #include "renderer/cli/commands.h"
+#include "renderer/cli/console.h"
 #include "renderer/core/parallel.h"
+#include "renderer/io/nearest_name.h"
 
 namespace {
 
@@ -24,14 +26,21 @@ void check_cpu() {
 }
 
 int report(const tessera::Error& e) {
-    std::fprintf(stderr, "%s\n", e.what());
+    tessera::print_err(std::string(e.what()) + "\n");
     return static_cast<int>(e.code());
+}
+
+tessera::Error unknown_command(const std::string& word) {
+    const std::vector<std::string> known{"render", "info", "bench", "version"};
+    return {tessera::ExitCode::usage, "tessera: unknown command '" + word + "'" + tessera::did_you_mean(word, known) +
+                                          "; there are render, info, bench and version (tessera --help)"};
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
     check_cpu();
+    tessera::open_closed_streams();
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);  // a size limit becomes a failed write, with its message
     tessera::flush_denormals();
@@ -45,17 +54,19 @@ int main(int argc, char** argv) {
                "  tessera render scene.toml -o out.exr --spp 256 --set camera.fov_deg=35\n"
                "  tessera info scene.toml\n"
                "Exit codes: 0 done, 1 a bug of ours, 2 usage, 3 scene or asset, 4 output, 5 memory,\n"
-               "  75 stopped with what there was written, 130/143 stopped with nothing saved");
+               "  75 stopped with what there was written, 129/130/143 stopped with nothing saved");
     tessera::CommandLine line;
     for (int i = 0; i < argc; ++i) line.text += (i ? " " : "") + std::string(argv[i]);
     tessera::add_render(app, line);
     tessera::add_info(app, line);
     tessera::add_bench(app, line);
     tessera::add_version(app, line);
+    tessera::add_schema(app, line);
 
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
+        if (app.get_subcommands().empty() && !app.remaining().empty()) return report(unknown_command(app.remaining().front()));
         const int code = app.exit(e);
         return code == 0 ? 0 : static_cast<int>(tessera::ExitCode::usage);
     }

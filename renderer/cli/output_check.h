@@ -1,11 +1,25 @@
 #pragma once
-// Finds out before the render whether its result can be written.
+// Finds out before the render whether its results can be written.
 
 #include <string>
+#include <vector>
+
+#include "renderer/api/scene_desc.h"
 
 namespace tessera {
 
-/// Throws Error(output) if `path` cannot be created: its folder is missing or not writable, or it is a folder.
-void check_output(const std::string& path, const char* option);
+/// One file that a render will write.
+struct OutputFile {
+    std::string path;
+    const char* option;                   // "--output"
+    std::vector<std::string> extensions;  // lower case; empty: any
+};
+
+/// Throws Error(usage) for an ending that the option does not write and for two outputs of one name, Error(output)
+/// where a file cannot be created. Empty paths are skipped.
+void check_outputs(const std::vector<OutputFile>& outputs);
+
+/// Throws Error(usage) if an output would replace a file that the scene is read from.
+void check_outputs_spare(const std::vector<OutputFile>& outputs, const SceneDesc& scene);
 
 }  // namespace tessera

@@ -5,9 +5,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
+#include <cmath>
+#include <cstdlib>
+#include <string_view>
 
 #include <fmt/format.h>
+
+#include "renderer/cli/console.h"
 
 namespace tessera {
 namespace {
@@ -19,6 +23,11 @@ int terminal_width() {
     return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
+bool can_draw() {
+    const char* const term = std::getenv("TERM");
+    return isatty(STDERR_FILENO) != 0 && !(term && std::string_view(term) == "dumb");
+}
+
 std::string clock_text(double s) {
     const int t = static_cast<int>(std::min(s, 3.6e6) + 0.5);
     return t >= 3600 ? fmt::format("{}:{:02}:{:02}", t / 3600, t / 60 % 60, t % 60) : fmt::format("{}:{:02}", t / 60, t % 60);
@@ -26,7 +35,7 @@ std::string clock_text(double s) {
 
 }  // namespace
 
-ProgressPrinter::ProgressPrinter(bool enabled) : enabled_(enabled), terminal_(isatty(STDERR_FILENO) != 0) {}
+ProgressPrinter::ProgressPrinter(bool enabled) : enabled_(enabled), terminal_(can_draw()) {}
 
 void ProgressPrinter::show(const Progress& p) {
     if (!enabled_) return;
@@ -47,18 +56,16 @@ void ProgressPrinter::bar(const Progress& p) {
     const std::string text = fmt::format(" {:3.0f}% {} spp  {} left {}", std::floor(p.fraction * 100), p.spp, clock_text(p.elapsed_s), clock_text(p.eta_s));
     const int room = std::clamp(terminal_width() - static_cast<int>(text.size()) - 3, 0, 60);
     const int filled = static_cast<int>(p.fraction * room);
-    fmt::print(stderr, "\r[{}{}]{}\033[K", std::string(filled, '#'), std::string(room - filled, '.'), text);
-    std::fflush(stderr);
+    print_err(fmt::format("\r[{}{}]{}\033[K", std::string(filled, '#'), std::string(room - filled, '.'), text));
     open_ = true;
 }
 
 void ProgressPrinter::line(const Progress& p) {
-    fmt::print(stderr, "progress {:.1f}% spp={} elapsed={:.0f} eta={:.0f} rss={}M\n", p.fraction * 100, p.spp, p.elapsed_s, p.eta_s, peak_memory() >> 20);
-    std::fflush(stderr);
+    print_err(fmt::format("progress {:.1f}% spp={} elapsed={:.0f} eta={:.0f} rss={}M\n", p.fraction * 100, p.spp, p.elapsed_s, p.eta_s, peak_memory() >> 20));
 }
 
 void ProgressPrinter::finish() {
-    if (open_) fmt::print(stderr, "\n");
+    if (open_) print_err("\n");
     open_ = false;
 }
 

@@ -1,12 +1,12 @@
 #include <CLI/CLI.hpp>
-#include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
-#include <csignal>
-#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <memory>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -14,7 +14,10 @@
 #include "renderer/cli/output_check.h"
 #include "renderer/cli/progress.h"
 #include "renderer/cli/scene_options.h"
+#include "renderer/cli/signals.h"
 #include "renderer/core/log.h"
+#include "renderer/image/atomic_file.h"
+#include "renderer/image/colour_space.h"
 #include "renderer/scene/scene.h"
 
 namespace tessera {
@@ -28,29 +31,10 @@ struct RenderOptions {
     int verbose = 0;
 };
 
-// Set by the handler, read by the tiles. The second signal ends the program at once.
-std::atomic<bool> g_cancel{false};
-volatile std::sig_atomic_t g_signal = 0;
-
-extern "C" void on_signal(int number) {
-    if (g_signal != 0) _exit(128 + number);
-    g_signal = number;
-    g_cancel.store(true, std::memory_order_relaxed);
-}
-
-void catch_signals() {
-    struct sigaction action {};
-    action.sa_handler = on_signal;
-    sigemptyset(&action.sa_mask);
-    for (int s : {SIGINT, SIGTERM, SIGHUP}) {
-        struct sigaction old {};
-        sigaction(s, nullptr, &old);
-        if (old.sa_handler != SIG_IGN) sigaction(s, &action, nullptr);  // nohup stays nohup
-    }
-}
-
-void stop_if_signalled() {
-    if (g_signal != 0) throw Error(static_cast<ExitCode>(128 + g_signal), "stopped by a signal before anything was rendered; nothing saved");
+// Throws for an unknown view before hours of rendering, not after.
+void check_view(const std::string& working_space, const std::string& view) {
+    std::array<float, 3> pixel{};
+    ColorSpaces(working_space).to_display(pixel, view);
 }
 
 std::string count(std::uint64_t n) {
@@ -76,56 +60,81 @@ void describe_in_header(LayeredImage& image, const Scene& scene, const Statistic
 }
 
 void write_stats(const Statistics& s, const std::string& path) {
-    const std::string temporary = path + ".tmp." + std::to_string(getpid());
-    std::ofstream file(temporary, std::ios::binary);
-    file << to_json(s);
-    file.close();
-    std::error_code error;
-    if (file) std::filesystem::rename(temporary, path, error);
-    if (!file || error) {
-        std::filesystem::remove(temporary, error);
-        throw Error(ExitCode::output, path + ": cannot write the statistics");
+    const std::string text = to_json(s);
+    AtomicFile file(path);
+    file.write(text.data(), text.size());
+    file.finish();
+    file.commit();
+}
+
+std::vector<OutputFile> outputs_of(const RenderOptions& o) {
+    return {{o.output, "--output", {".exr"}}, {o.preview, "--preview", {".png", ".jpg", ".jpeg"}}, {o.stats, "--stats", {}}};
+}
+
+void say_what_was_built(const Statistics& s, double load_s, bool quiet) {
+    if (!quiet) {
+        for (const std::string& w : s.warnings) log_warning(w);
+    }
+    for (const std::string& n : s.notes) log_info("note: " + n);
+    log_info(fmt::format("scene    {} triangles ({} instanced), {} lights, kernel {}, load {:.2f} s, build {:.2f} s",
+                         count(s.triangles_stored), count(s.triangles_instanced), s.lights, s.kernel, load_s, s.build_s));
+    for (const LeftOut& l : s.left_out) log_verbose("left out " + l.what + ": " + l.why);
+}
+
+void say_what_was_rendered(const Statistics& s) {
+    const auto per_second = [&](std::uint64_t n) {
+        return count(static_cast<std::uint64_t>(static_cast<double>(n) / std::max(s.render_s, 1e-6)));
+    };
+    log_info(fmt::format("render   {} spp in {:.2f} s, {}samples/s, {}rays/s ({} threads)", s.spp, s.render_s,
+                         per_second(s.samples), per_second(s.rays.total()), s.threads));
+}
+
+void warn_of_lost_values(const Statistics& s) {
+    if (!s.first_invalid.empty()) {
+        const std::uint64_t total = std::accumulate(s.invalid.begin(), s.invalid.end(), std::uint64_t{0});
+        log_warning(fmt::format("{} invalid samples or rays were dropped; first: {}", total, s.first_invalid));
+    }
+    if (s.half_clamped > 0) {
+        log_warning(fmt::format("{} values are beyond half's 65504 and were clamped (--float keeps them)", s.half_clamped));
     }
 }
 
-int run_render(const RenderOptions& options, const std::string& command) {
+RenderResult render_with_progress(const Scene& scene, const RenderOptions& o) {
+    ProgressPrinter printer(!o.no_progress && !o.quiet);
+    RenderSettings settings;
+    settings.threads = o.scene.threads;
+    settings.tile = o.scene.tile;
+    settings.time_s = o.time_s;
+    settings.cancel = &stop_at_next_tile();
+    settings.progress = [&](const Progress& p) { printer.show(p); };
+    RenderResult result = render(scene, settings);
+    printer.finish();
+    return result;
+}
+
+int run_render(RenderOptions options, const std::string& command) {
     set_log_level(options.quiet ? LogLevel::quiet : (options.verbose > 0 ? LogLevel::verbose : LogLevel::normal));
-    const auto check = [](const std::string& path, const char* option) {
-        if (!path.empty()) check_output(path, option);
-    };
-    check(options.output, "--output");
-    check(options.preview, "--preview");
-    check(options.stats, "--stats");
+    if (options.output.empty()) {
+        options.output = std::filesystem::path(options.scene.scene).stem().string() + ".exr";
+        log_info("note: no -o given, the picture goes to " + options.output);
+    }
     catch_signals();
+    check_outputs(outputs_of(options));
 
     double load_s = 0;
     SceneDesc desc = options.scene.load(load_s);
-    stop_if_signalled();
+    check_outputs_spare(outputs_of(options), desc);
+    if (!options.preview.empty()) check_view(desc.film.working_space, options.view);
     const ScenePtr scene = build_scene(std::move(desc), options.scene.build_options());
-    stop_if_signalled();
-    const Statistics built = describe(*scene);
-    if (!options.quiet) {
-        for (const std::string& w : built.warnings) log_warning(w);
-    }
-    for (const std::string& n : built.notes) log_info("note: " + n);
-    log_info(fmt::format("scene    {} triangles ({} instanced), {} lights, kernel {}, load {:.2f} s, build {:.2f} s",
-                         count(built.triangles_stored), count(built.triangles_instanced), built.lights, built.kernel, load_s, built.build_s));
-    for (const LeftOut& l : built.left_out) log_verbose("left out " + l.what + ": " + l.why);
+    say_what_was_built(describe(*scene), load_s, options.quiet);
 
-    ProgressPrinter printer(!options.no_progress && !options.quiet);
-    RenderSettings settings;
-    settings.threads = options.scene.threads;
-    settings.tile = options.scene.tile;
-    settings.time_s = options.time_s;
-    settings.cancel = &g_cancel;
-    settings.progress = [&](const Progress& p) { printer.show(p); };
-    RenderResult result = render(*scene, settings);
-    printer.finish();
+    RenderResult result = render_with_progress(*scene, options);
     Statistics& s = result.stats;
     s.load_s = load_s;
-    log_info(fmt::format("render   {} spp in {:.2f} s, {}samples/s, {}rays/s ({} threads)", s.spp, s.render_s,
-                         count(static_cast<std::uint64_t>(static_cast<double>(s.samples) / s.render_s)),
-                         count(static_cast<std::uint64_t>(static_cast<double>(s.rays.total()) / s.render_s)), s.threads));
+    if (!result.complete && s.samples == 0) {
+        throw Error(static_cast<ExitCode>(signal_exit_code()), "stopped by a signal before anything was rendered; nothing saved");
+    }
+    say_what_was_rendered(s);
 
     const auto start = std::chrono::steady_clock::now();
     describe_in_header(result.image, *scene, s, command);
@@ -136,14 +145,7 @@ int run_render(const RenderOptions& options, const std::string& command) {
     s.half_non_finite = written.non_finite;
     s.memory_peak = peak_memory();
     if (!options.stats.empty()) write_stats(s, options.stats);
-    if (!s.first_invalid.empty() && !options.quiet) {
-        std::uint64_t total = 0;
-        for (std::uint64_t n : s.invalid) total += n;
-        log_warning(fmt::format("{} invalid samples or rays were dropped; first: {}", total, s.first_invalid));
-    }
-    if (written.clamped > 0 && !options.quiet) {
-        log_warning(fmt::format("{} values are beyond half's 65504 and were clamped (--float keeps them)", written.clamped));
-    }
+    if (!options.quiet) warn_of_lost_values(s);
     log_info(fmt::format("wrote    {} ({:.1f} MiB, {:.2f} s), peak memory {} MiB{}", options.output, static_cast<double>(written.bytes) / (1 << 20),
                          s.write_s, s.memory_peak >> 20, result.complete ? "" : ", partial"));
     return static_cast<int>(result.complete ? ExitCode::done : ExitCode::checkpoint);
@@ -155,11 +157,16 @@ void add_render(CLI::App& app, CommandLine& line) {
     CLI::App* sub = app.add_subcommand("render", "Render a scene to a layered EXR");
     auto o = std::make_shared<RenderOptions>();
     o->scene.add_to(*sub);
-    sub->add_option("-o,--output", o->output, "The EXR to write")->required();
+    const auto positive_seconds = [](const std::string& text) {
+        char* end = nullptr;
+        const double s = std::strtod(text.c_str(), &end);
+        return *end == 0 && s > 0 && s <= 1e9 ? std::string() : text + " is no number of seconds above 0";
+    };
+    sub->add_option("-o,--output", o->output, "The EXR to write (default: the scene's name, in the current folder)");
     sub->add_option("--preview", o->preview, "Also a .png or .jpg for the eye");
     sub->add_option("--view", o->view, "OpenColorIO view of the preview (default: the config's)");
     sub->add_option("--stats", o->stats, "Statistics as JSON");
-    sub->add_option("--time", o->time_s, "Seconds to render; passes until they are used, --spp at most")->check(CLI::PositiveNumber);
+    sub->add_option("--time", o->time_s, "Seconds to render; passes until they are used, --spp at most")->check(positive_seconds);
     sub->add_flag("--float", o->all_float, "All channels as 32-bit float");
     sub->add_flag("--no-progress", o->no_progress, "No progress on stderr");
     sub->add_flag("-v,--verbose", o->verbose, "Say more");

@@ -1,9 +1,9 @@
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "renderer/cli/commands.h"
+#include "renderer/cli/console.h"
 #include "renderer/core/parallel.h"
 #include "renderer/geometry/accel.h"
 
@@ -22,9 +22,10 @@ void add_version(CLI::App& app, CommandLine& line) {
                                                   {"march", TESSERA_MARCH},
 #endif
                                                   {"threads", limit.threads}, {"threads_because", limit.because}};
-                std::printf("%s\n", j.dump(2).c_str());
+                print_out(j.dump(2) + "\n");
             } else {
-                std::printf("tessera %s\nEmbree %s\nthreads %d (%s)\n", TESSERA_VERSION, Accel::version().c_str(), limit.threads, limit.because.c_str());
+                print_out(std::string("tessera ") + TESSERA_VERSION + "\nEmbree " + Accel::version() + "\nthreads " +
+                          std::to_string(limit.threads) + " (" + limit.because + ")\n");
             }
             return 0;
         };

@@ -195,8 +195,8 @@ private:
                 const int i = std::countr_zero(m);
                 rays.set(i, shadow_[i]);
             }
-            if (job_.log) job_.log->packet(rays, shadow_lanes_, seeds_, true, true);
-            blocked = scene_.accel().occluded(rays, shadow_lanes_, seeds_, true);
+            if (job_.log) job_.log->packet(rays, shadow_lanes_, seeds_, true, false);
+            blocked = scene_.accel().occluded(rays, shadow_lanes_, seeds_, false);
         } else {
             for (LaneMask m = shadow_lanes_; m != 0; m &= m - 1) {
                 const int i = std::countr_zero(m);

@@ -139,8 +139,8 @@ private:
         if (waiting == 0) return;
         counters_.rays.shadow += static_cast<std::uint64_t>(std::popcount(waiting));
         ray_seeds(2 * step + 1);
-        if (job_.log) job_.log->packet(shadow_, waiting, seeds_, true, step == 0);
-        const LaneMask blocked = scene_.accel().occluded(shadow_, waiting, seeds_, step == 0);
+        if (job_.log) job_.log->packet(shadow_, waiting, seeds_, true, false);
+        const LaneMask blocked = scene_.accel().occluded(shadow_, waiting, seeds_, false);
         for (LaneMask m = waiting & ~blocked; m != 0; m &= m - 1) {
             const int i = std::countr_zero(m);
             out_[i].radiance += pending_[i];

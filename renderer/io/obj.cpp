@@ -76,12 +76,15 @@ void remark(const ObjMesh& built, const ObjRemainder& remainder, Problems& probl
     }
 }
 
-int default_material(const ObjMaterialUse& use, Tally& tally, SceneDesc& scene) {
+int default_material(const ObjMaterialUse& use, const ObjOptions& options, Tally& tally,
+                     SceneDesc& scene) {
     MaterialDesc grey;
     grey.name = use.line > 0 ? use.name : "default";
-    grey.loc = {tally.file(), static_cast<int>(use.line), 0};
     grey.specular_weight.value = 0;
-    if (use.line > 0)
+    // A stand-in without a place: the scene's own definition follows.
+    const bool defined = use.line > 0 && options.defined.contains(use.name);
+    if (!defined) grey.loc = {tally.file(), static_cast<int>(use.line), 0};
+    if (use.line > 0 && !defined)
         tally.add("no mtllib defines the material, grey is used:", use.line, "'" + use.name + "'");
     scene.materials.push_back(std::move(grey));
     return static_cast<int>(scene.materials.size() - 1);
@@ -123,7 +126,7 @@ int load_obj(const std::string& path, const AssetRules& assets, SceneDesc& scene
     Tally unresolved(problems, loc.file, Problems::kMax);
     for (const ObjMaterialUse& use : built.materials) {
         int material = use.line > 0 ? materials.material(use.name) : -1;
-        if (material < 0) material = default_material(use, unresolved, scene);
+        if (material < 0) material = default_material(use, options, unresolved, scene);
         MaterialDesc& desc = scene.materials[static_cast<std::size_t>(material)];
         desc.use_vertex_color = !mesh.colors.empty() && desc.base_color.texture < 0;
         mesh.materials.push_back(material);

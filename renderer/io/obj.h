@@ -1,6 +1,7 @@
 #pragma once
 // OBJ files: a normaliser of ours, tinyobjloader in double precision, checks of ours.
 
+#include <set>
 #include <string>
 
 #include "renderer/api/scene_desc.h"
@@ -10,6 +11,7 @@ namespace tessera {
 
 struct ObjOptions {
     SourceLoc from;  // where the scene names this file, for errors about the file itself
+    std::set<std::string> defined = {};  // materials that the scene defines, so no library has to
 };
 
 /// Reads path into scene: appends one mesh, its materials (and a default one when needed) and

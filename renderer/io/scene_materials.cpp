@@ -250,9 +250,14 @@ private:
             all.push_back(std::move(material));
             return;
         }
+        const bool from_library = std::any_of(old->second.begin(), old->second.end(), [&](int i) {
+            return all[static_cast<std::size_t>(i)].loc.file != nullptr;
+        });
         const std::string did = inherits ? "changes" : "replaces";
-        reader_.problems.note(material.loc,
-                              "material '" + name + "' " + did + " the one of the OBJ's library");
+        if (from_library) {
+            reader_.problems.note(
+                material.loc, "material '" + name + "' " + did + " the one of the OBJ's library");
+        }
         for (const int index : old->second) all[static_cast<std::size_t>(index)] = material;
     }
 

@@ -33,7 +33,6 @@ const KeySet<CameraDesc>& camera_rows() {
                  "Radius of the lens in scene units; 0 is a pinhole.", kAtLeast0),
              key("focus_distance", &C::focus_distance,
                  "Distance of what is sharp; 0 is the distance to look_at.", kAtLeast0),
-             key("near_clip", &C::near_clip, "Nothing nearer than this is seen.", kAtLeast0),
          }}};
     return keys;
 }
@@ -59,9 +58,9 @@ const KeySet<FilmDesc>& film_part() {
                      {.low = 0, .high = 32, .open_low = true}),
                  word("working_space", &F::working_space, {"lin_rec709", "acescg"},
                       "The linear colour space of every colour in the scene and of the picture."),
-                 key("aovs", &F::aovs, "Layers beside beauty; none named: Z, N, P, albedo."),
+                 key("aovs", &F::aovs, "Layers beside beauty; none named: all; 'beauty' alone: no other."),
              }}};
-        rows.list.keys.back().form.choices = {"Z", "N", "P", "albedo"};
+        rows.list.keys.back().form.choices = {"beauty", "Z", "N", "P", "albedo"};
         return rows;
     }();
     return keys;
@@ -93,8 +92,6 @@ const KeySet<RenderDesc>& render_rows() {
                  kDepth),
              key("min_depth", &R::min_depth, "No path is ended by chance before this many bounces.",
                  kDepth),
-             key("ray_length_max", &R::ray_length_max, "Rays end here; unlimited when absent.",
-                 kAbove0),
          }}};
     return keys;
 }

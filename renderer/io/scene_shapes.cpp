@@ -65,7 +65,15 @@ const KeySet<DiscEntry>& disc_rows() {
 
 class MeshLoader {
 public:
-    explicit MeshLoader(SceneReader& reader) : reader_(reader) {}
+    MeshLoader(const Value& document, SceneReader& reader) : reader_(reader) {
+        const Value* materials = document.find("material");
+        if (!materials || !materials->table()) return;
+        for (const auto& [name, table] : *materials->table()) {
+            // One that inherits from itself changes what a library has to define.
+            const Value* parent = table.table() ? table.find("inherits") : nullptr;
+            if (!parent || !parent->text() || *parent->text() != name) defined_.insert(name);
+        }
+    }
 
     /// The mesh of a file, loaded once however many [[mesh]] name it; -1 after reporting.
     int load(const std::string& file, const SourceLoc& loc, const ReadContext& at) {
@@ -83,7 +91,7 @@ public:
 private:
     int load_new(const std::string& path, const SourceLoc& loc, const ReadContext& at) {
         try {
-            return load_obj(path, reader_.assets, reader_.scene, at.problems, {loc});
+            return load_obj(path, reader_.assets, reader_.scene, at.problems, {loc, defined_});
         } catch (const Error& error) {
             const bool full = at.problems.errors().size() >= std::size_t(Problems::kMax);
             if (full || error.code() != ExitCode::scene) throw;
@@ -93,6 +101,7 @@ private:
     }
 
     SceneReader& reader_;
+    std::set<std::string> defined_;  // materials of the scene file
     std::map<std::string, int> loaded_;
 };
 
@@ -137,7 +146,7 @@ void read_discs(const Value& document, SceneReader& reader, ShapeNames& names) {
 }  // namespace
 
 void load_meshes(const Value& document, SceneReader& reader, ShapeNames& names) {
-    MeshLoader loader(reader);
+    MeshLoader loader(document, reader);
     std::size_t number = 0;
     for (const Value& table : tables_of(document, "mesh", reader.problems)) {
         const ReadContext at{reader.problems, subject_of("mesh", table, number++)};

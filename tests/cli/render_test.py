@@ -7,7 +7,7 @@ import subprocess
 import unittest
 
 from exr import Exr
-from support import OUTPUT, SCENE_TOML, SLOWDOWN, TesseraTest
+from support import SCENE_TOML, SLOWDOWN, TesseraTest
 
 DEFAULT_CHANNELS = {
     "R": "half",
@@ -139,10 +139,17 @@ class Options(TesseraTest):
         self.write("top.toml", 'include = ["film.toml"]\n' + SCENE_TOML.replace("resolution = [48, 32]", ""))
         self.assertEqual(self.render(scene="top.toml").size, (16, 8))
 
-    def test_output_of_an_unknown_kind_is_refused(self):
-        run = self.run_program("render", "scene.toml", "-o", "out.xyz")
-        self.assertIn(run.code, (2, OUTPUT), run)
-        self.assertFalse((self.folder / "out.xyz").exists())
+    def test_without_an_output_the_picture_goes_to_the_current_folder_and_says_so(self):
+        for name in ("scene.toml", "triangles.obj", "triangles.mtl"):
+            self.write(f"in/{name}", (self.folder / name).read_bytes())
+        run = self.expect(0, "render", "in/scene.toml")
+        self.assertIn("scene.exr", run.err)
+        self.assertEqual(Exr(self.folder / "scene.exr").size, (48, 32))
+        self.assertFalse((self.folder / "in" / "scene.exr").exists())
+
+    def test_names_beyond_ascii_and_long_ones(self):
+        name = "вид №1 – 日本 " + "x" * 60 + ".exr"
+        self.assertEqual(self.render(output=name).size, (48, 32))
 
 
 class Console(TesseraTest):

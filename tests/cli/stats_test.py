@@ -26,6 +26,11 @@ class Stats(TesseraTest):
         # A schema that requires nothing would accept anything.
         self.assertTrue(schema.get("required"))
         jsonschema.validate(self.statistics(), schema)
+        info = json.loads(self.expect(0, "info", "scene.toml", "--json").out, parse_constant=self.fail)
+        jsonschema.validate(info, schema)
+        for broken in ({}, {**info, "spp": -1}, {**info, "sp": 1}, {k: v for k, v in info.items() if k != "rays"}):
+            with self.assertRaises(jsonschema.ValidationError):
+                jsonschema.validate(broken, schema)
 
     def test_has_what_a_farm_looks_for(self):
         text = json.dumps(self.statistics("--spp", "3", "-t", "1")).lower()

@@ -66,11 +66,28 @@ class Usage(TesseraTest):
         self.write_scene()
         self.refuse("render", "scene.toml", "-o", "out.exr", "--sppp", "4", saying="--sppp")
 
-    def test_missing_scene_and_missing_output(self):
-        self.write_scene()
+    def test_missing_scene(self):
         self.refuse("render", "-o", "out.exr")
-        self.refuse("render", "scene.toml")
         self.refuse("info")
+
+    def test_outputs_of_a_wrong_kind(self):
+        self.write_scene()
+        self.refuse("render", "scene.toml", "-o", "out.xyz", saying=".exr")
+        self.refuse("render", "scene.toml", "-o", "/dev/null", saying=".exr")
+        self.refuse("render", "scene.toml", "-o", "out.png", saying="-o out.exr --preview out.png")
+        self.refuse("render", "scene.toml", "-o", "out.exr", "--preview", "out.bmp", saying=".png")
+        self.refuse("render", "scene.toml", "-o", "out.exr", "--preview", "out.png", "--view", "Nowhere", saying="Nowhere")
+
+    def test_two_outputs_of_one_name(self):
+        self.write_scene()
+        self.refuse("render", "scene.toml", "-o", "out.exr", "--stats", "./out.exr", saying="--stats")
+
+    def test_output_that_would_replace_an_input(self):
+        self.write_scene()
+        for name in ("scene.toml", "triangles.obj", "triangles.mtl"):
+            before = (self.folder / name).read_bytes()
+            self.refuse("render", "scene.toml", "-o", "out.exr", "--stats", name, saying=name)
+            self.assertEqual((self.folder / name).read_bytes(), before)
 
     def test_values_out_of_range(self):
         self.write_scene()

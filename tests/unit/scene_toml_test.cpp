@@ -245,6 +245,19 @@ TEST_CASE("scene toml: a material of the scene replaces the OBJ library's, and s
     CHECK(material(kept, "red").specular_roughness.value == 0.9f);
 }
 
+TEST_CASE("scene toml: a mesh without a library takes the scene's materials, without a word") {
+    const SceneFolder folder;
+    folder.write("bare.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
+    const std::string mesh = "[[mesh]]\nfile = 'bare.obj'\n";
+    const SceneDesc scene = folder.load(mesh + "[material.red]\nspecular_roughness = 0.9");
+    CHECK(material(scene, "red").specular_roughness.value == 0.9f);
+    CHECK_FALSE(contains(scene.warnings, "'red'"));
+    CHECK_FALSE(contains(scene.notes, "'red'"));
+    // What inherits from a library's material still needs the library.
+    const SceneDesc lost = folder.load(mesh + "[material.red]\ninherits = 'red'");
+    CHECK(contains(lost.warnings, "no mtllib defines the material"));
+}
+
 TEST_CASE("scene toml: inputs are numbers, colours or images") {
     const SceneFolder folder;
     folder.write("tiles.png", "x");
