@@ -13,7 +13,7 @@ namespace {
 constexpr int kMu = 24, kAlpha = 16, kEta = 12;
 
 // The axes are bent so that cells are small where the albedo curves: near grazing, near smooth, near eta = 1.
-float mu_at(float x) { return std::fmax(x * x, 1e-4f); }
+float mu_at(float x) { return std::max(x * x, 1e-4f); }
 float alpha_at(float x) { return x * x; }
 float eta_at(float x) { return 1.0f + 3.0f * x * x; }
 
@@ -47,7 +47,7 @@ Cell cell(float x, int n) {
 
 float dielectric_reflection_albedo_quadrature(float cos_o, float alpha, float eta, int n) noexcept {
     const Vec3f wo{safe_sqrt(1.0f - cos_o * cos_o), 0.0f, cos_o};
-    const Ggx ggx{std::fmax(alpha, 1e-4f), std::fmax(alpha, 1e-4f)};
+    const Ggx ggx{std::max(alpha, 1e-4f), std::max(alpha, 1e-4f)};
     const float g1 = ggx.g1(wo);
     double sum = 0;
     for (int i = 0; i < n; ++i) {
@@ -72,6 +72,19 @@ float dielectric_reflection_albedo(float cos_o, float alpha, float eta) noexcept
         sum += w * table.values[((e.i + de) * kAlpha + a.i + da) * kMu + m.i + dm];
     }
     return sum;
+}
+
+ReflectionAlbedoCurve::ReflectionAlbedoCurve(float alpha, float eta) {
+    static_assert(kCells == kMu);  // the same cells, so that curve and table agree
+    for (int i = 0; i < kCells; ++i) {
+        const float x = static_cast<float>(i) / (kCells - 1);
+        values_[i] = dielectric_reflection_albedo(x * x, alpha, eta);
+    }
+}
+
+float ReflectionAlbedoCurve::operator()(float cos_o) const noexcept {
+    const Cell c = cell(safe_sqrt(cos_o), kCells);
+    return values_[c.i] + (values_[c.i + 1] - values_[c.i]) * c.t;
 }
 
 }  // namespace tessera

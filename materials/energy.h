@@ -8,6 +8,17 @@ namespace tessera {
 /// quadrature over the visible normals; absolute error below 0.004 (tests/unit/energy_test.cpp).
 float dielectric_reflection_albedo(float cos_o, float alpha, float eta) noexcept;
 
+/// The same along cos_o alone, for a boundary that does not vary: made once per material.
+class ReflectionAlbedoCurve {
+public:
+    ReflectionAlbedoCurve(float alpha, float eta);
+    float operator()(float cos_o) const noexcept;
+
+private:
+    static constexpr int kCells = 24;
+    float values_[kCells];
+};
+
 /// The same by quadrature with n x n points; for the table and its test.
 float dielectric_reflection_albedo_quadrature(float cos_o, float alpha, float eta, int n) noexcept;
 

@@ -7,8 +7,8 @@
 
 namespace tessera {
 
-/// Unpolarised dielectric. cos_i >= 0: cosine on the incident side; eta: index beyond over index here.
-/// Returns 1 under total internal reflection; cos_t receives the transmitted cosine (0 then).
+/// Unpolarised dielectric. cos_i >= 0: cosine on the incident side; eta: index beyond over index
+/// here. Returns 1 under total internal reflection; cos_t receives the transmitted cosine (0 then).
 /// Born & Wolf, "Principles of Optics", section 1.5.2.
 inline float fresnel_dielectric(float cos_i, float eta, float* cos_t_out = nullptr) {
     const float sin2_t = (1.0f - cos_i * cos_i) / (eta * eta);
@@ -25,11 +25,13 @@ inline float fresnel_dielectric(float cos_i, float eta, float* cos_t_out = nullp
 
 constexpr float pow5(float x) { return x * x * x * x * x; }
 
-/// Metal by its colour at normal incidence (f0) and at 82 degrees relative to Schlick's curve (f82).
-/// Kutz, Hasan, Edmondson, "Novel Aspects of the Adobe Standard Material", 2021; OpenPBR 1.1, "Metal".
+/// Metal by its colour at normal incidence (f0) and at 82 degrees relative to Schlick's curve
+/// (f82). Kutz, Hasan, Edmondson, "Novel Aspects of the Adobe Standard Material", 2021;
+/// OpenPBR 1.1, "Metal".
 inline Color fresnel_f82(Color f0, Color f82, float cos_i) {
     constexpr float kMu = 1.0f / 7.0f;
-    constexpr float kMuTerm = kMu * (1 - kMu) * (1 - kMu) * (1 - kMu) * (1 - kMu) * (1 - kMu) * (1 - kMu);
+    constexpr float kMuTerm =
+        kMu * (1 - kMu) * (1 - kMu) * (1 - kMu) * (1 - kMu) * (1 - kMu) * (1 - kMu);
     constexpr float kMuSchlick = (1 - kMu) * (1 - kMu) * (1 - kMu) * (1 - kMu) * (1 - kMu);
     const Color white(1.0f);
     const Color schlick = f0 + (white - f0) * pow5(1.0f - cos_i);
@@ -39,12 +41,12 @@ inline Color fresnel_f82(Color f0, Color f82, float cos_i) {
     return max(schlick - dip, Color(0.0f));
 }
 
-/// OpenPBR's specular_weight scales the reflectance at normal incidence and, above 1, the index with it:
-/// returns the index whose F0 is weight times that of ior. OpenPBR 1.1, "Dielectric base".
+/// OpenPBR's specular_weight scales the reflectance at normal incidence and, above 1, the index
+/// with it: returns the index whose F0 is weight times that of ior. OpenPBR 1.1, "Dielectric base".
 inline float modulated_ior(float ior, float weight) {
     if (weight == 1.0f) return ior;
     const float r = (ior - 1.0f) / (ior + 1.0f);
-    const float f0 = std::fmin(weight * r * r, 0.9999f);
+    const float f0 = std::min(weight * r * r, 0.9999f);
     const float e = std::copysign(std::sqrt(f0), r);
     return (1.0f + e) / (1.0f - e);
 }

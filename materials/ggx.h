@@ -1,7 +1,8 @@
 #pragma once
-// The GGX distribution of microfacets, height-correlated Smith masking, sampling of the visible normals.
-// Walter et al., "Microfacet Models for Refraction", EGSR 2007; Heitz, "Understanding the Masking-Shadowing
-// Function", JCGT 3(2), 2014; Dupuy & Benyoub, "Sampling Visible GGX Normals with Spherical Caps", HPG 2023.
+// The GGX distribution of microfacets, height-correlated Smith masking, sampling of the visible
+// normals. Walter et al., "Microfacet Models for Refraction", EGSR 2007; Heitz, "Understanding the
+// Masking-Shadowing Function", JCGT 3(2), 2014; Dupuy & Benyoub, "Sampling Visible GGX Normals with
+// Spherical Caps", HPG 2023.
 
 #include <cmath>
 
@@ -10,7 +11,8 @@
 
 namespace tessera {
 
-/// Below this alpha a surface is a mirror: D at its peak would exceed 1e5 and its square float's comfort.
+/// Below this alpha a surface is a mirror: D at its peak would exceed 1e5 and its square float's
+/// comfort.
 inline constexpr float kMinAlpha = 1e-3f;
 
 struct Ggx {
@@ -28,7 +30,9 @@ struct Ggx {
     float g1(Vec3f w) const { return 1.0f / (1.0f + lambda(w)); }
     float g2(Vec3f wo, Vec3f wi) const { return 1.0f / (1.0f + lambda(wo) + lambda(wi)); }
     /// Density of the visible normals seen from wo.
-    float visible(Vec3f wo, Vec3f h) const { return g1(wo) * std::fmax(0.0f, dot(wo, h)) * d(h) / wo.z; }
+    float visible(Vec3f wo, Vec3f h) const {
+        return g1(wo) * std::max(0.0f, dot(wo, h)) * d(h) / wo.z;
+    }
 
     Vec3f sample_visible(Vec3f wo, Vec2f u) const {
         const Vec3f w = normalize(Vec3f{wo.x * ax, wo.y * ay, wo.z});
@@ -36,7 +40,7 @@ struct Ggx {
         const float z = (1.0f - u.y) * (1.0f + w.z) - w.z;
         const float r = safe_sqrt(1.0f - z * z);
         const Vec3f h = Vec3f{r * a.cos, r * a.sin, z} + w;
-        return normalize(Vec3f{h.x * ax, h.y * ay, std::fmax(1e-7f, h.z)});
+        return normalize(Vec3f{h.x * ax, h.y * ay, std::max(1e-7f, h.z)});
     }
 };
 

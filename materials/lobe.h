@@ -17,6 +17,8 @@ struct LobeEval {
     float pdf = 0;
 };
 
+/// Lobes have eval(wo, wi), sample(wo, u, choice), albedo(wo), and, unless they are deltas, direction(): sample()
+/// without weight and pdf, for when those of several lobes together are wanted.
 struct LobeSample {
     Vec3f wi;
     Color weight;         // f / pdf; for a delta lobe the whole ratio

@@ -115,6 +115,13 @@ ShaderProgram::ShaderProgram(const MaterialDesc& desc) : m_(folded(desc)) {
     constant_.transmission_weight = value(m_.transmission_weight);
     constant_.transmission_color = color_of(m_.transmission_color.value);
     constant_.thin_walled = m_.geometry_thin_walled;
+    const bool same_boundary = m_.specular_roughness.texture < 0 && m_.specular_roughness_anisotropy.texture < 0 &&
+                               m_.specular_weight.texture < 0;
+    if (same_boundary && facts_.specular && !one(m_.base_metalness) && !one(m_.transmission_weight)) {
+        const Ggx ggx = openpbr_ggx(constant_.specular_roughness, constant_.specular_roughness_anisotropy);
+        boundary_ = std::make_shared<ReflectionAlbedoCurve>(std::sqrt(ggx.ax * ggx.ay), openpbr_boundary_eta(constant_));
+        constant_.boundary = boundary_.get();
+    }
 }
 
 SurfaceParams ShaderProgram::surface(const ShadeInput& in, const TextureStore* store) const noexcept {
@@ -167,7 +174,7 @@ std::optional<Vec3f> ShaderProgram::normal(const ShadeInput& in, const TextureSt
     if (m_.geometry_normal < 0) return std::nullopt;
     const Texel t = store->sample(m_.geometry_normal, in.uv.x, in.uv.y, in.uv_width);
     const float s = m_.geometry_normal_scale;
-    const Vec3f n{(2.0f * t[0] - 1.0f) * s, (2.0f * t[1] - 1.0f) * s, std::fmax(2.0f * t[2] - 1.0f, 1e-3f)};
+    const Vec3f n{(2.0f * t[0] - 1.0f) * s, (2.0f * t[1] - 1.0f) * s, std::max(2.0f * t[2] - 1.0f, 1e-3f)};
     return normalize(n);
 }
 

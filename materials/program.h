@@ -2,6 +2,7 @@
 // A material compiled once: constants folded, what cannot matter dropped, facts known. Run at every hit.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -54,6 +55,7 @@ private:
     MaterialDesc m_;
     SurfaceParams constant_;  // what does not vary
     ProgramFacts facts_;
+    std::shared_ptr<const ReflectionAlbedoCurve> boundary_;  // shared: programs are copied into place
 };
 
 /// The description with its texture indices taken through `to` (-1: not loaded because nothing reads it).

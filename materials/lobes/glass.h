@@ -35,7 +35,7 @@ struct RoughGlass {
         const float pdf = visible * (1.0f - fresnel) * std::fabs(ih) / (denom * denom);
         return {transmit_tint * (pdf * g / (eta * eta)), pdf};
     }
-    std::optional<LobeSample> sample(Vec3f wo, Vec2f u, float choice) const {
+    std::optional<LobeSample> direction(Vec3f wo, Vec2f u, float choice) const {
         const Vec3f h = ggx.sample_visible(wo, u);
         const float oh = dot(wo, h);
         if (!(oh > 0.0f)) return std::nullopt;
@@ -44,10 +44,17 @@ struct RoughGlass {
         const bool reflected = choice < fresnel;
         const Vec3f wi = reflected ? reflect(wo, h) : normalize(refract(wo, h, eta, cos_t));
         if (reflected ? !(wi.z > 0.0f) : !(wi.z < 0.0f)) return std::nullopt;
-        const LobeEval e = eval(wo, wi);
+        return LobeSample{wi, Color(0.0f), 0.0f, reflected ? LobeClass::glossy : LobeClass::transmission, false,
+                          reflected ? 1.0f : eta, 0.25f * std::max(ggx.ax, ggx.ay)};
+    }
+    std::optional<LobeSample> sample(Vec3f wo, Vec2f u, float choice) const {
+        auto s = direction(wo, u, choice);
+        if (!s) return s;
+        const LobeEval e = eval(wo, s->wi);
         if (!(e.pdf > 0.0f)) return std::nullopt;
-        return LobeSample{wi, e.f / e.pdf, e.pdf, reflected ? LobeClass::glossy : LobeClass::transmission, false,
-                          reflected ? 1.0f : eta, 0.25f * std::fmax(ggx.ax, ggx.ay)};
+        s->weight = e.f / e.pdf;
+        s->pdf = e.pdf;
+        return s;
     }
     Color albedo(Vec3f wo) const {
         const float f = fresnel_dielectric(wo.z, eta);

@@ -31,17 +31,22 @@ struct RoughReflection {
         if (!(l2 > 0.0f)) return {};
         const Vec3f h = sum / std::sqrt(l2);
         const float common = ggx.d(h) / (4.0f * wo.z);
-        return {fresnel(clamp01(dot(wo, h))) * (common * ggx.g2(wo, wi)), common * ggx.g1(wo)};
+        const float masked = 1.0f + ggx.lambda(wo);
+        return {fresnel(clamp01(dot(wo, h))) * (common / (masked + ggx.lambda(wi))), common / masked};
     }
-    std::optional<LobeSample> sample(Vec3f wo, Vec2f u, float) const {
-        const Vec3f h = ggx.sample_visible(wo, u);
-        const Vec3f wi = reflect(wo, h);
+    std::optional<LobeSample> direction(Vec3f wo, Vec2f u, float) const {
+        const Vec3f wi = reflect(wo, ggx.sample_visible(wo, u));
         if (!(wi.z > 0.0f)) return std::nullopt;
-        const float g1 = ggx.g1(wo);
-        const float pdf = ggx.d(h) * g1 / (4.0f * wo.z);
-        if (!(pdf > 0.0f)) return std::nullopt;
-        const Color weight = fresnel(clamp01(dot(wo, h))) * (ggx.g2(wo, wi) / g1);
-        return LobeSample{wi, weight, pdf, LobeClass::glossy, false, 1.0f, 0.25f * std::fmax(ggx.ax, ggx.ay)};
+        return LobeSample{wi, Color(0.0f), 0.0f, LobeClass::glossy, false, 1.0f, 0.25f * std::max(ggx.ax, ggx.ay)};
+    }
+    std::optional<LobeSample> sample(Vec3f wo, Vec2f u, float choice) const {
+        auto s = direction(wo, u, choice);
+        if (!s) return s;
+        const LobeEval e = eval(wo, s->wi);
+        if (!(e.pdf > 0.0f)) return std::nullopt;
+        s->weight = e.f / e.pdf;
+        s->pdf = e.pdf;
+        return s;
     }
     Color albedo(Vec3f) const { return reflectance; }
 };

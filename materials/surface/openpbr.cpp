@@ -43,6 +43,12 @@ Ggx openpbr_ggx(float roughness, float anisotropy) {
     return {std::max(ax, kMinAlpha), std::max(a * ax, kMinAlpha)};
 }
 
+float openpbr_boundary_eta(const SurfaceParams& p) {
+    // Opaque bases look the same from both sides, so their boundary is always entered.
+    const float ior = modulated_ior(p.specular_ior, p.specular_weight);
+    return std::max(ior, 1.0f / ior);
+}
+
 LobeList openpbr_lobes(const SurfaceParams& p, Vec3f wo, bool front) noexcept {
     LobeList lobes;
     const float metal = p.base_metalness;
@@ -51,12 +57,13 @@ LobeList openpbr_lobes(const SurfaceParams& p, Vec3f wo, bool front) noexcept {
     const float ior = modulated_ior(p.specular_ior, p.specular_weight);
     const Ggx ggx = openpbr_ggx(p.specular_roughness, p.specular_roughness_anisotropy);
     if (opaque > 0.0f) {
-        // Opaque bases look the same from both sides, so their boundary is always entered.
-        const float eta = std::max(ior, 1.0f / ior);
+        const float eta = openpbr_boundary_eta(p);
         float reflected = 0.0f;
         if (eta > 1.0f + kSameIndex) {
             const float alpha = std::sqrt(ggx.ax * ggx.ay);
-            reflected = alpha < kMinAlpha ? fresnel_dielectric(wo.z, eta) : dielectric_reflection_albedo(wo.z, alpha, eta);
+            reflected = alpha < kMinAlpha ? fresnel_dielectric(wo.z, eta)
+                        : p.boundary      ? (*p.boundary)(wo.z)
+                                          : dielectric_reflection_albedo(wo.z, alpha, eta);
             push_reflection(lobes, ggx, DielectricFresnel{eta}, p.specular_color * opaque, Color(reflected));
         }
         // Albedo scaling: the base gets what the boundary lets through. OpenPBR 1.1, "Layering".

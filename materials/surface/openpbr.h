@@ -2,6 +2,7 @@
 // OpenPBR Surface 1.1, the part that exists now: its parameters at one point, and the lobes they make.
 // Andersson et al., "OpenPBR Surface Specification", Academy Software Foundation, 2024.
 
+#include "materials/energy.h"
 #include "materials/lobe_list.h"
 
 namespace tessera {
@@ -18,7 +19,11 @@ struct SurfaceParams {
     float transmission_weight = 0;
     Color transmission_color{1.0f};
     bool thin_walled = false;
+    const ReflectionAlbedoCurve* boundary = nullptr;  // of the dielectric boundary if it is the same everywhere
 };
+
+/// Index of the opaque base's boundary, always entered from outside: at least 1.
+float openpbr_boundary_eta(const SurfaceParams& p);
 
 /// Roughness to the two GGX alphas. OpenPBR 1.1, "Microfacet model".
 Ggx openpbr_ggx(float roughness, float anisotropy);

@@ -52,7 +52,8 @@ public:
     void error(const SourceLoc& loc, const std::string& message);
     /// Records a warning. The same text is kept once.
     void warn(const SourceLoc& loc, const std::string& message);
-    /// A remark about what was done in the user's place (never an error). The same text is kept once.
+    /// A remark about what was done in the user's place (never an error). The same text is kept
+    /// once.
     void note(const SourceLoc& loc, const std::string& message);
     /// Throws Error(code) with every error collected so far, if there is one.
     void throw_if_any(ExitCode code = ExitCode::scene) const;

@@ -19,14 +19,14 @@ struct Layer {
     std::string name;                   // "" = root of the file (beauty, Z)
     std::vector<std::string> channels;  // {"R","G","B","A"}, {"X","Y","Z"}, {"Z"} ...
     LayerKind kind = LayerKind::color;
-    std::vector<float> pixels;          // window.width * window.height * channels.size()
+    std::vector<float> pixels;  // window.width * window.height * channels.size()
 };
 
 using MetadataValue = std::variant<int, float, std::string>;
 
 /// A layered picture: display is the full frame, window the pixels that are there.
 struct LayeredImage {
-    int width = 0;   // display window
+    int width = 0;  // display window
     int height = 0;
     PixelWindow window;
     std::string working_space = "lin_rec709";
@@ -48,10 +48,12 @@ struct WriteReport {
 
 /// Writes one single-part layered EXR beside `path`, reads it back, renames it over `path`.
 /// A kill at any moment leaves the old file or the new one. Throws Error(ExitCode::output).
-WriteReport write_exr(const LayeredImage& image, const std::string& path, const WriteOptions& options = {});
+WriteReport write_exr(const LayeredImage& image, const std::string& path,
+                      const WriteOptions& options = {});
 
-/// Writes the beauty (root R,G,B,A) as .png or .jpg through a display view ("" = the config's default).
-/// Throws Error(ExitCode::output).
-void write_preview(const LayeredImage& image, const std::string& path, const std::string& view = "");
+/// Writes the beauty (root R,G,B,A) as .png or .jpg through a display view ("" = the config's
+/// default). Throws Error(ExitCode::output).
+void write_preview(const LayeredImage& image, const std::string& path,
+                   const std::string& view = "");
 
 }  // namespace tessera

@@ -16,11 +16,11 @@ namespace tessera {
 
 /// Why a sample, ray or contribution was dropped.
 enum class InvalidCause : int {
-    camera_ray,          // the camera made a ray with a non-finite component
-    bounce_ray,          // a continued path did
+    camera_ray,  // the camera made a ray with a non-finite component
+    bounce_ray,  // a continued path did
     shadow_ray,
-    hit,                 // a hit with non-finite position or normal
-    radiance,            // a non-finite or negative sample value
+    hit,       // a hit with non-finite position or normal
+    radiance,  // a non-finite or negative sample value
     count,
 };
 inline constexpr int kInvalidCauses = static_cast<int>(InvalidCause::count);
@@ -37,8 +37,8 @@ struct RayCounts {
 
 /// One thing that the scene did not need.
 struct LeftOut {
-    std::string what;   // "texture system"
-    std::string why;    // "no image is read"
+    std::string what;  // "texture system"
+    std::string why;   // "no image is read"
 };
 
 /// What a run did and cost. Times are wall seconds.
@@ -51,7 +51,8 @@ struct Statistics {
     std::uint64_t samples = 0;  // camera samples taken
     std::uint64_t triangles_stored = 0, triangles_instanced = 0, instances = 0, lights = 0;
     std::uint64_t memory_peak = 0;  // bytes, resident
-    std::uint64_t memory_geometry = 0, memory_bvh = 0, memory_textures = 0, memory_film = 0, memory_lights = 0;
+    std::uint64_t memory_geometry = 0, memory_bvh = 0, memory_textures = 0, memory_film = 0,
+                  memory_lights = 0;
     std::array<std::uint64_t, kInvalidCauses> invalid{};
     std::string first_invalid;  // "radiance at pixel 312,80 sample 17"
     std::uint64_t half_clamped = 0, half_non_finite = 0;
@@ -68,9 +69,9 @@ class Scene;
 using ScenePtr = std::shared_ptr<const Scene>;
 
 struct BuildOptions {
-    int threads = 0;      // as RenderSettings
-    std::string kernel;   // "" = the smallest that covers the scene; "basic", "surface", "full"
-    std::string isa;      // Embree's instruction set, "" = the best of this machine
+    int threads = 0;     // as RenderSettings
+    std::string kernel;  // "" = the smallest that covers the scene; "basic", "surface", "full"
+    std::string isa;     // Embree's instruction set, "" = the best of this machine
     bool strict = false;
 };
 
@@ -79,10 +80,10 @@ struct BuildOptions {
 ScenePtr build_scene(SceneDesc&& desc, const BuildOptions& options = {});
 
 struct Progress {
-    double fraction = 0;   // 0..1
+    double fraction = 0;  // 0..1
     double elapsed_s = 0;
     double eta_s = 0;
-    int spp = 0;           // of the pass under way
+    int spp = 0;  // of the pass under way
 };
 
 struct RenderSettings {

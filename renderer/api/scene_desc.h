@@ -1,8 +1,9 @@
 #pragma once
 // A scene as plain data: what a loader, a test, a script or a host program fills.
 //
-// Lengths in scene units (1 = 1 m), colours linear in the working space, angles in degrees where the
-// name says _deg. Objects refer to each other by index into the vectors of SceneDesc; -1 is "none".
+// Lengths in scene units (1 = 1 m), colours linear in the working space, angles in degrees where
+// the name says _deg. Objects refer to each other by index into the vectors of SceneDesc; -1 is
+// "none".
 
 #include <array>
 #include <cstdint>
@@ -23,7 +24,8 @@ using Double3 = std::array<double, 3>;
 using Matrix34 = std::array<double, 12>;
 inline constexpr Matrix34 kIdentity34{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
-// ---- images and materials -------------------------------------------------------------------------
+// ---- images and materials
+// -------------------------------------------------------------------------
 
 enum class Wrap : std::uint8_t { repeat, clamp, mirror, black };
 
@@ -33,9 +35,9 @@ struct TextureDesc {
     std::string color_space;  // OCIO name; "" = by use: sRGB for colours, raw for data
     Wrap wrap_u = Wrap::repeat;
     Wrap wrap_v = Wrap::repeat;
-    Float2 scale{1, 1};   // uv' = uv * scale + offset
+    Float2 scale{1, 1};  // uv' = uv * scale + offset
     Float2 offset{0, 0};
-    float gain = 1;       // value' = value * gain + bias (MTL -mm)
+    float gain = 1;  // value' = value * gain + bias (MTL -mm)
     float bias = 0;
     SourceLoc loc;
 };
@@ -77,16 +79,17 @@ struct MaterialDesc {
     ColorInput emission_color{{1, 1, 1}};
     FloatInput geometry_opacity{1};
     bool geometry_thin_walled = false;
-    int geometry_normal = -1;          // tangent-space normal map (texture index), OpenGL handedness
+    int geometry_normal = -1;  // tangent-space normal map (texture index), OpenGL handedness
     float geometry_normal_scale = 1;
-    bool use_vertex_color = false;     // base_color is multiplied by the mesh's vertex colours
+    bool use_vertex_color = false;  // base_color is multiplied by the mesh's vertex colours
 };
 
-// ---- shapes ---------------------------------------------------------------------------------------
+// ---- shapes
+// ---------------------------------------------------------------------------------------
 
 /// Triangles and quads. Faces are numbered triangles first, then quads, each in file order.
-/// Index arrays hold 3 entries per triangle, then 4 per quad. An empty normal_index or uv_index means
-/// "as position_index"; empty normals or uvs mean there are none.
+/// Index arrays hold 3 entries per triangle, then 4 per quad. An empty normal_index or uv_index
+/// means "as position_index"; empty normals or uvs mean there are none.
 struct MeshDesc {
     std::string name;
     SourceLoc loc;
@@ -145,7 +148,8 @@ struct GroupDesc {
     std::vector<InstanceDesc> members;
 };
 
-// ---- lights ---------------------------------------------------------------------------------------
+// ---- lights
+// ---------------------------------------------------------------------------------------
 
 struct PointLightDesc {
     Double3 position{0, 0, 0};
@@ -199,31 +203,34 @@ struct LightDesc {
 /// Light from all around. With a file: lat-long, y up, u = 0.5 looks along -z at rotate_deg 0.
 struct EnvironmentDesc {
     SourceLoc loc;
-    std::string file;         // resolved path; "" = constant
-    std::string color_space;  // "" = linear working space
-    Float3 radiance{1, 1, 1}; // constant, or the factor on the image
-    double rotate_deg = 0;    // about +y
-    bool visible = true;      // to camera rays
+    std::string file;          // resolved path; "" = constant
+    std::string color_space;   // "" = linear working space
+    Float3 radiance{1, 1, 1};  // constant, or the factor on the image
+    double rotate_deg = 0;     // about +y
+    bool visible = true;       // to camera rays
 };
 
-// ---- camera, film, settings -----------------------------------------------------------------------
+// ---- camera, film, settings
+// -----------------------------------------------------------------------
 
 enum class Projection : std::uint8_t { perspective, orthographic };
 enum class FovAxis : std::uint8_t { vertical, horizontal };
 
 struct CameraDesc {
     SourceLoc loc;
-    bool automatic = true;  // frame the scene from a three-quarter view; the placement below is ignored
+    bool automatic =
+        true;  // frame the scene from a three-quarter view; the placement below is ignored
     Projection projection = Projection::perspective;
     Double3 position{0, 0, 5};
     Double3 look_at{0, 0, 0};
     Double3 up{0, 1, 0};
-    std::optional<Matrix34> matrix;  // camera to world (x right, y up, looks along -z); replaces the three above
+    std::optional<Matrix34>
+        matrix;  // camera to world (x right, y up, looks along -z); replaces the three above
     double fov_deg = 40;
     FovAxis fov_axis = FovAxis::vertical;
-    double ortho_height = 2;         // scene units, orthographic only
-    double aperture_radius = 0;      // thin lens, scene units; 0 = pinhole
-    double focus_distance = 0;       // 0 = distance to look_at
+    double ortho_height = 2;     // scene units, orthographic only
+    double aperture_radius = 0;  // thin lens, scene units; 0 = pinhole
+    double focus_distance = 0;   // 0 = distance to look_at
 };
 
 enum class PixelFilter : std::uint8_t { box, triangle, gaussian, blackman_harris };
@@ -242,7 +249,7 @@ struct FilmDesc {
     int height = 540;
     std::optional<PixelWindow> crop;
     PixelFilter filter = PixelFilter::blackman_harris;
-    double filter_width_px = 3;               // full width of the support
+    double filter_width_px = 3;                // full width of the support
     std::string working_space = "lin_rec709";  // or "acescg"
     std::vector<std::string> aovs;             // beyond beauty; empty = Z, N, P, albedo
 };
@@ -254,11 +261,11 @@ struct RenderDesc {
     Integrator integrator = Integrator::path;
     int spp = 64;
     std::uint64_t seed = 0;
-    int max_depth = 12;               // bounces in all
+    int max_depth = 12;  // bounces in all
     int max_diffuse_depth = 5;
     int max_glossy_depth = 8;
     int max_transmission_depth = 12;
-    int min_depth = 3;                // no Russian roulette before this many bounces
+    int min_depth = 3;  // no Russian roulette before this many bounces
 };
 
 struct SceneDesc {
@@ -281,9 +288,9 @@ struct SceneDesc {
 };
 
 struct LoadOptions {
-    bool strict = false;                   // warnings become errors
-    bool allow_external_assets = false;    // assets outside the scene's folders
-    std::vector<std::string> set;          // "camera.fov_deg=35", applied in order over the scene file
+    bool strict = false;                 // warnings become errors
+    bool allow_external_assets = false;  // assets outside the scene's folders
+    std::vector<std::string> set;  // "camera.fov_deg=35", applied in order over the scene file
 };
 
 /// Reads an .obj or .toml scene. Throws Error (ExitCode::scene or usage) with file:line:column.

@@ -5,8 +5,8 @@
 
 namespace tessera {
 
-/// Opens /dev/null for each of stdin, stdout and stderr that is closed, so that no file of ours gets its number
-/// and with it the log.
+/// Opens /dev/null for each of stdin, stdout and stderr that is closed, so that no file of ours
+/// gets its number and with it the log.
 void open_closed_streams();
 
 /// Writes a command's result to stdout and flushes it. Throws Error(output) if that fails.

@@ -6,14 +6,16 @@
 
 #include "renderer/cli/commands.h"
 #include "renderer/cli/console.h"
-#include "renderer/cli/scene_options.h"
 #include "renderer/cli/progress.h"
+#include "renderer/cli/scene_options.h"
 #include "renderer/scene/scene.h"
 
 namespace tessera {
 namespace {
 
-std::string mib(std::uint64_t bytes) { return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1 << 20)); }
+std::string mib(std::uint64_t bytes) {
+    return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1 << 20));
+}
 
 std::string text_of(const Scene& scene) {
     std::string text;
@@ -21,13 +23,18 @@ std::string text_of(const Scene& scene) {
     const Statistics s = describe(scene);
     const Vec3d size = scene.bounds_max() - scene.bounds_min();
     fmt::format_to(add, "{}\n", s.scene);
-    fmt::format_to(add, "  picture    {} x {}, {} samples per pixel, integrator {}\n", s.width, s.height, s.spp, s.integrator);
-    fmt::format_to(add, "  geometry   {} triangles stored, {} instanced, {} instances\n", s.triangles_stored, s.triangles_instanced, s.instances);
+    fmt::format_to(add, "  picture    {} x {}, {} samples per pixel, integrator {}\n", s.width,
+                   s.height, s.spp, s.integrator);
+    fmt::format_to(add, "  geometry   {} triangles stored, {} instanced, {} instances\n",
+                   s.triangles_stored, s.triangles_instanced, s.instances);
     fmt::format_to(add, "  size       {:.6g} x {:.6g} x {:.6g}", size.x, size.y, size.z);
     const Vec3d o = scene.origin();
-    if (!(o == Vec3d{})) fmt::format_to(add, ", traced about ({:.17g}, {:.17g}, {:.17g})", o.x, o.y, o.z);
+    if (!(o == Vec3d{}))
+        fmt::format_to(add, ", traced about ({:.17g}, {:.17g}, {:.17g})", o.x, o.y, o.z);
     fmt::format_to(add, "\n  lights     {}\n", s.lights);
-    fmt::format_to(add, "  memory     geometry {}, BVH {}, textures {}, lights {}\n", mib(s.memory_geometry), mib(s.memory_bvh), mib(s.memory_textures), mib(s.memory_lights));
+    fmt::format_to(add, "  memory     geometry {}, BVH {}, textures {}, lights {}\n",
+                   mib(s.memory_geometry), mib(s.memory_bvh), mib(s.memory_textures),
+                   mib(s.memory_lights));
     fmt::format_to(add, "  kernel     {} (Embree {}, {})\n", s.kernel, Accel::version(), s.isa);
     fmt::format_to(add, "  hash       {}\n", scene.hash());
     fmt::format_to(add, "left out\n");
@@ -40,7 +47,8 @@ std::string text_of(const Scene& scene) {
 }  // namespace
 
 void add_info(CLI::App& app, CommandLine& line) {
-    CLI::App* sub = app.add_subcommand("info", "Print what is in a scene, and what of the renderer it does not need");
+    CLI::App* sub = app.add_subcommand(
+        "info", "Print what is in a scene, and what of the renderer it does not need");
     auto options = std::make_shared<SceneOptions>();
     auto json = std::make_shared<bool>(false);
     options->add_to(*sub);

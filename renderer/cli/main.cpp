@@ -1,9 +1,13 @@
 // tessera: the command line. Parses, runs one command, turns errors into messages and exit codes.
 
+#include <unistd.h>
 #include <CLI/CLI.hpp>
+
 #include <csignal>
 #include <cstdio>
+#include <exception>
 #include <new>
+#include <system_error>
 
 #include "renderer/api/error.h"
 #include "renderer/cli/commands.h"
@@ -17,9 +21,11 @@ void check_cpu() {
 #ifdef TESSERA_MARCH
     __builtin_cpu_init();
     constexpr std::string_view march = TESSERA_MARCH;
-    if ((march == "x86-64-v3" || march == "x86-64-v4") && !(__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2"))) {
+    if ((march == "x86-64-v3" || march == "x86-64-v4") &&
+        !(__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2"))) {
         std::fputs("tessera: this build needs a CPU with AVX2 (" TESSERA_MARCH
-                   "); configure with -DTESSERA_MARCH=x86-64 for older ones\n", stderr);
+                   "); configure with -DTESSERA_MARCH=x86-64 for older ones\n",
+                   stderr);
         std::exit(static_cast<int>(tessera::ExitCode::usage));
     }
 #endif
@@ -30,16 +36,43 @@ int report(const tessera::Error& e) {
     return static_cast<int>(e.code());
 }
 
+// Reached when memory for a worker thread or inside a library runs out, where no exception can be
+// handed on.
+[[noreturn]] void on_terminate() {
+    int code = static_cast<int>(tessera::ExitCode::bug);
+    std::string what = "unknown";
+    try {
+        if (const std::exception_ptr current = std::current_exception())
+            std::rethrow_exception(current);
+    } catch (const std::bad_alloc&) {
+        code = static_cast<int>(tessera::ExitCode::memory);
+    } catch (const std::system_error& e) {
+        const bool starved = e.code() == std::errc::resource_unavailable_try_again ||
+                             e.code() == std::errc::not_enough_memory;
+        if (starved) code = static_cast<int>(tessera::ExitCode::memory);
+        what = e.what();
+    } catch (const std::exception& e) {
+        what = e.what();
+    } catch (...) {
+    }
+    const bool memory = code == static_cast<int>(tessera::ExitCode::memory);
+    tessera::print_err(memory ? "tessera: out of memory or threads\n"
+                              : "tessera: internal error: " + what + "\n");
+    _exit(code);
+}
+
 tessera::Error unknown_command(const std::string& word) {
     const std::vector<std::string> known{"render", "info", "bench", "version"};
-    return {tessera::ExitCode::usage, "tessera: unknown command '" + word + "'" + tessera::did_you_mean(word, known) +
-                                          "; there are render, info, bench and version (tessera --help)"};
+    return {tessera::ExitCode::usage,
+            "tessera: unknown command '" + word + "'" + tessera::did_you_mean(word, known) +
+                "; there are render, info, bench and version (tessera --help)"};
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
     check_cpu();
+    std::set_terminate(on_terminate);
     tessera::open_closed_streams();
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);  // a size limit becomes a failed write, with its message
@@ -49,12 +82,13 @@ int main(int argc, char** argv) {
     app.name("tessera");
     app.require_subcommand(1);
     app.set_version_flag("--version", std::string("tessera ") + TESSERA_VERSION);
-    app.footer("Examples:\n"
-               "  tessera render bunny.obj -o bunny.exr --preview bunny.png\n"
-               "  tessera render scene.toml -o out.exr --spp 256 --set camera.fov_deg=35\n"
-               "  tessera info scene.toml\n"
-               "Exit codes: 0 done, 1 a bug of ours, 2 usage, 3 scene or asset, 4 output, 5 memory,\n"
-               "  75 stopped with what there was written, 129/130/143 stopped with nothing saved");
+    app.footer(
+        "Examples:\n"
+        "  tessera render bunny.obj -o bunny.exr --preview bunny.png\n"
+        "  tessera render scene.toml -o out.exr --spp 256 --set camera.fov_deg=35\n"
+        "  tessera info scene.toml\n"
+        "Exit codes: 0 done, 1 a bug of ours, 2 usage, 3 scene or asset, 4 output, 5 memory,\n"
+        "  75 stopped with what there was written, 129/130/143 stopped with nothing saved");
     tessera::CommandLine line;
     for (int i = 0; i < argc; ++i) line.text += (i ? " " : "") + std::string(argv[i]);
     tessera::add_render(app, line);
@@ -66,7 +100,8 @@ int main(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
-        if (app.get_subcommands().empty() && !app.remaining().empty()) return report(unknown_command(app.remaining().front()));
+        if (app.get_subcommands().empty() && !app.remaining().empty())
+            return report(unknown_command(app.remaining().front()));
         const int code = app.exit(e);
         return code == 0 ? 0 : static_cast<int>(tessera::ExitCode::usage);
     }
@@ -77,6 +112,7 @@ int main(int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         return report({tessera::ExitCode::memory, "tessera: out of memory"});
     } catch (const std::exception& e) {
-        return report({tessera::ExitCode::bug, std::string("tessera: internal error: ") + e.what()});
+        return report(
+            {tessera::ExitCode::bug, std::string("tessera: internal error: ") + e.what()});
     }
 }

@@ -1,12 +1,11 @@
 #include "renderer/cli/output_check.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
 
 #include "renderer/api/error.h"
+#include "renderer/image/atomic_file.h"
 
 namespace tessera {
 namespace {
@@ -25,25 +24,13 @@ void check_extension(const OutputFile& output) {
     if (known.empty() || std::find(known.begin(), known.end(), extension) != known.end()) return;
     std::string message = std::string(output.option) + " " + output.path + ": must end in ";
     for (std::size_t i = 0; i < known.size(); ++i) message += (i ? " or " : "") + known[i];
-    if (known[0] == ".exr" && (extension == ".png" || extension == ".jpg" || extension == ".jpeg")) {
+    if (known[0] == ".exr" &&
+        (extension == ".png" || extension == ".jpg" || extension == ".jpeg")) {
         const std::string exr = fs::path(output.path).replace_extension(".exr").string();
-        message += "; a picture for the eye comes beside it: -o " + exr + " --preview " + output.path;
+        message +=
+            "; a picture for the eye comes beside it: -o " + exr + " --preview " + output.path;
     }
     throw Error(ExitCode::usage, message);
-}
-
-void check_writable(const OutputFile& output) {
-    std::error_code error;
-    const fs::path path(output.path);
-    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-    const auto fail = [&](const std::string& why) {
-        throw Error(ExitCode::output, output.path + ": cannot write (" + output.option + "): " + why);
-    };
-    if (!fs::exists(folder, error)) fail("the folder '" + folder.string() + "' does not exist");
-    if (!fs::is_directory(folder, error)) fail("'" + folder.string() + "' is not a folder");
-    if (fs::is_directory(path, error)) fail("it is a folder");
-    if (fs::exists(path, error) && !fs::is_regular_file(path, error)) fail("it is not a regular file");
-    if (access(folder.c_str(), W_OK | X_OK) != 0) fail("the folder '" + folder.string() + "' is not writable");
 }
 
 fs::path real_path(const std::string& path) {
@@ -58,11 +45,11 @@ void check_outputs(const std::vector<OutputFile>& outputs) {
     for (const OutputFile& output : outputs) {
         if (output.path.empty()) continue;
         check_extension(output);
-        check_writable(output);
+        const AtomicFile trial(output.path);  // creates a temporary file and removes it again
         for (const OutputFile* other = outputs.data(); other != &output; ++other) {
             if (other->path.empty() || real_path(other->path) != real_path(output.path)) continue;
-            throw Error(ExitCode::usage, std::string(output.option) + " " + output.path + ": is the file of " +
-                                             other->option + " too");
+            throw Error(ExitCode::usage, std::string(output.option) + " " + output.path +
+                                             ": is the file of " + other->option + " too");
         }
     }
 }
@@ -76,8 +63,10 @@ void check_outputs_spare(const std::vector<OutputFile>& outputs, const SceneDesc
         if (output.path.empty()) continue;
         for (const std::string& input : inputs) {
             if (input.empty() || real_path(input) != real_path(output.path)) continue;
-            throw Error(ExitCode::usage, std::string(output.option) + " " + output.path +
-                                             ": would replace a file that the scene is read from; give another name");
+            throw Error(
+                ExitCode::usage,
+                std::string(output.option) + " " + output.path +
+                    ": would replace a file that the scene is read from; give another name");
         }
     }
 }

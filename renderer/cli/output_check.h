@@ -15,8 +15,8 @@ struct OutputFile {
     std::vector<std::string> extensions;  // lower case; empty: any
 };
 
-/// Throws Error(usage) for an ending that the option does not write and for two outputs of one name, Error(output)
-/// where a file cannot be created. Empty paths are skipped.
+/// Throws Error(usage) for an ending that the option does not write and for two outputs of one
+/// name, Error(output) where a file cannot be created. Empty paths are skipped.
 void check_outputs(const std::vector<OutputFile>& outputs);
 
 /// Throws Error(usage) if an output would replace a file that the scene is read from.

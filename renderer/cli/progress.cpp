@@ -30,7 +30,8 @@ bool can_draw() {
 
 std::string clock_text(double s) {
     const int t = static_cast<int>(std::min(s, 3.6e6) + 0.5);
-    return t >= 3600 ? fmt::format("{}:{:02}:{:02}", t / 3600, t / 60 % 60, t % 60) : fmt::format("{}:{:02}", t / 60, t % 60);
+    return t >= 3600 ? fmt::format("{}:{:02}:{:02}", t / 3600, t / 60 % 60, t % 60)
+                     : fmt::format("{}:{:02}", t / 60, t % 60);
 }
 
 }  // namespace
@@ -44,7 +45,9 @@ void ProgressPrinter::show(const Progress& p) {
         if (!end && p.elapsed_s - last_time_ < kBarSeconds) return;
         bar(p);
     } else {
-        if (!end && p.elapsed_s - last_time_ < kLineSeconds && p.fraction - last_fraction_ < kLineShare) return;
+        if (!end && p.elapsed_s - last_time_ < kLineSeconds &&
+            p.fraction - last_fraction_ < kLineShare)
+            return;
         if (!end && p.elapsed_s - last_time_ < 1.0) return;
         line(p);
     }
@@ -53,15 +56,19 @@ void ProgressPrinter::show(const Progress& p) {
 }
 
 void ProgressPrinter::bar(const Progress& p) {
-    const std::string text = fmt::format(" {:3.0f}% {} spp  {} left {}", std::floor(p.fraction * 100), p.spp, clock_text(p.elapsed_s), clock_text(p.eta_s));
+    const std::string text =
+        fmt::format(" {:3.0f}% {} spp  {} left {}", std::floor(p.fraction * 100), p.spp,
+                    clock_text(p.elapsed_s), clock_text(p.eta_s));
     const int room = std::clamp(terminal_width() - static_cast<int>(text.size()) - 3, 0, 60);
     const int filled = static_cast<int>(p.fraction * room);
-    print_err(fmt::format("\r[{}{}]{}\033[K", std::string(filled, '#'), std::string(room - filled, '.'), text));
+    print_err(fmt::format("\r[{}{}]{}\033[K", std::string(filled, '#'),
+                          std::string(room - filled, '.'), text));
     open_ = true;
 }
 
 void ProgressPrinter::line(const Progress& p) {
-    print_err(fmt::format("progress {:.1f}% spp={} elapsed={:.0f} eta={:.0f} rss={}M\n", p.fraction * 100, p.spp, p.elapsed_s, p.eta_s, peak_memory() >> 20));
+    print_err(fmt::format("progress {:.1f}% spp={} elapsed={:.0f} eta={:.0f} rss={}M\n",
+                          p.fraction * 100, p.spp, p.elapsed_s, p.eta_s, peak_memory() >> 20));
 }
 
 void ProgressPrinter::finish() {

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "renderer/cli/commands.h"
+#include "renderer/cli/console.h"
 #include "renderer/cli/output_check.h"
 #include "renderer/cli/progress.h"
 #include "renderer/cli/scene_options.h"
@@ -44,7 +45,8 @@ std::string count(std::uint64_t n) {
     return n >= 10000 ? fmt::format("{:.1f}k", v * 1e-3) : fmt::format("{}", n);
 }
 
-void describe_in_header(LayeredImage& image, const Scene& scene, const Statistics& s, const std::string& command) {
+void describe_in_header(LayeredImage& image, const Scene& scene, const Statistics& s,
+                        const std::string& command) {
     auto& m = image.metadata;
     m.emplace_back("tessera/version", s.version);
     m.emplace_back("tessera/scene", s.scene);
@@ -61,6 +63,7 @@ void describe_in_header(LayeredImage& image, const Scene& scene, const Statistic
 
 void write_stats(const Statistics& s, const std::string& path) {
     const std::string text = to_json(s);
+    if (path == "-") return print_out(text);
     AtomicFile file(path);
     file.write(text.data(), text.size());
     file.finish();
@@ -68,7 +71,9 @@ void write_stats(const Statistics& s, const std::string& path) {
 }
 
 std::vector<OutputFile> outputs_of(const RenderOptions& o) {
-    return {{o.output, "--output", {".exr"}}, {o.preview, "--preview", {".png", ".jpg", ".jpeg"}}, {o.stats, "--stats", {}}};
+    return {{o.output, "--output", {".exr"}},
+            {o.preview, "--preview", {".png", ".jpg", ".jpeg"}},
+            {o.stats == "-" ? "" : o.stats, "--stats", {}}};
 }
 
 void say_what_was_built(const Statistics& s, double load_s, bool quiet) {
@@ -76,26 +81,33 @@ void say_what_was_built(const Statistics& s, double load_s, bool quiet) {
         for (const std::string& w : s.warnings) log_warning(w);
     }
     for (const std::string& n : s.notes) log_info("note: " + n);
-    log_info(fmt::format("scene    {} triangles ({} instanced), {} lights, kernel {}, load {:.2f} s, build {:.2f} s",
-                         count(s.triangles_stored), count(s.triangles_instanced), s.lights, s.kernel, load_s, s.build_s));
+    log_info(fmt::format(
+        "scene    {} triangles ({} instanced), {} lights, kernel {}, load {:.2f} s, build {:.2f} s",
+        count(s.triangles_stored), count(s.triangles_instanced), s.lights, s.kernel, load_s,
+        s.build_s));
     for (const LeftOut& l : s.left_out) log_verbose("left out " + l.what + ": " + l.why);
 }
 
 void say_what_was_rendered(const Statistics& s) {
     const auto per_second = [&](std::uint64_t n) {
-        return count(static_cast<std::uint64_t>(static_cast<double>(n) / std::max(s.render_s, 1e-6)));
+        return count(
+            static_cast<std::uint64_t>(static_cast<double>(n) / std::max(s.render_s, 1e-6)));
     };
-    log_info(fmt::format("render   {} spp in {:.2f} s, {}samples/s, {}rays/s ({} threads)", s.spp, s.render_s,
-                         per_second(s.samples), per_second(s.rays.total()), s.threads));
+    log_info(fmt::format("render   {} spp in {:.2f} s, {}samples/s, {}rays/s ({} threads)", s.spp,
+                         s.render_s, per_second(s.samples), per_second(s.rays.total()), s.threads));
 }
 
 void warn_of_lost_values(const Statistics& s) {
     if (!s.first_invalid.empty()) {
-        const std::uint64_t total = std::accumulate(s.invalid.begin(), s.invalid.end(), std::uint64_t{0});
-        log_warning(fmt::format("{} invalid samples or rays were dropped; first: {}", total, s.first_invalid));
+        const std::uint64_t total =
+            std::accumulate(s.invalid.begin(), s.invalid.end(), std::uint64_t{0});
+        log_warning(fmt::format("{} invalid samples or rays were dropped; first: {}", total,
+                                s.first_invalid));
     }
     if (s.half_clamped > 0) {
-        log_warning(fmt::format("{} values are beyond half's 65504 and were clamped (--float keeps them)", s.half_clamped));
+        log_warning(
+            fmt::format("{} values are beyond half's 65504 and were clamped (--float keeps them)",
+                        s.half_clamped));
     }
 }
 
@@ -113,7 +125,8 @@ RenderResult render_with_progress(const Scene& scene, const RenderOptions& o) {
 }
 
 int run_render(RenderOptions options, const std::string& command) {
-    set_log_level(options.quiet ? LogLevel::quiet : (options.verbose > 0 ? LogLevel::verbose : LogLevel::normal));
+    set_log_level(options.quiet ? LogLevel::quiet
+                                : (options.verbose > 0 ? LogLevel::verbose : LogLevel::normal));
     if (options.output.empty()) {
         options.output = std::filesystem::path(options.scene.scene).stem().string() + ".exr";
         log_info("note: no -o given, the picture goes to " + options.output);
@@ -132,7 +145,8 @@ int run_render(RenderOptions options, const std::string& command) {
     Statistics& s = result.stats;
     s.load_s = load_s;
     if (!result.complete && s.samples == 0) {
-        throw Error(static_cast<ExitCode>(signal_exit_code()), "stopped by a signal before anything was rendered; nothing saved");
+        throw Error(static_cast<ExitCode>(signal_exit_code()),
+                    "stopped by a signal before anything was rendered; nothing saved");
     }
     say_what_was_rendered(s);
 
@@ -146,8 +160,9 @@ int run_render(RenderOptions options, const std::string& command) {
     s.memory_peak = peak_memory();
     if (!options.stats.empty()) write_stats(s, options.stats);
     if (!options.quiet) warn_of_lost_values(s);
-    log_info(fmt::format("wrote    {} ({:.1f} MiB, {:.2f} s), peak memory {} MiB{}", options.output, static_cast<double>(written.bytes) / (1 << 20),
-                         s.write_s, s.memory_peak >> 20, result.complete ? "" : ", partial"));
+    log_info(fmt::format("wrote    {} ({:.1f} MiB, {:.2f} s), peak memory {} MiB{}", options.output,
+                         static_cast<double>(written.bytes) / (1 << 20), s.write_s,
+                         s.memory_peak >> 20, result.complete ? "" : ", partial"));
     return static_cast<int>(result.complete ? ExitCode::done : ExitCode::checkpoint);
 }
 
@@ -157,24 +172,33 @@ void add_render(CLI::App& app, CommandLine& line) {
     CLI::App* sub = app.add_subcommand("render", "Render a scene to a layered EXR");
     auto o = std::make_shared<RenderOptions>();
     o->scene.add_to(*sub);
+    const auto named = [](const std::string& text) {
+        return text.empty() ? "the name is empty" : std::string();
+    };
     const auto positive_seconds = [](const std::string& text) {
         char* end = nullptr;
         const double s = std::strtod(text.c_str(), &end);
-        return *end == 0 && s > 0 && s <= 1e9 ? std::string() : text + " is no number of seconds above 0";
+        return *end == 0 && s > 0 && s <= 1e9 ? std::string()
+                                              : text + " is no number of seconds above 0";
     };
-    sub->add_option("-o,--output", o->output, "The EXR to write (default: the scene's name, in the current folder)");
-    sub->add_option("--preview", o->preview, "Also a .png or .jpg for the eye");
+    sub->add_option("-o,--output", o->output,
+                    "The EXR to write (default: the scene's name, in the current folder)")
+        ->check(named);
+    sub->add_option("--preview", o->preview, "Also a .png or .jpg for the eye")->check(named);
     sub->add_option("--view", o->view, "OpenColorIO view of the preview (default: the config's)");
-    sub->add_option("--stats", o->stats, "Statistics as JSON");
-    sub->add_option("--time", o->time_s, "Seconds to render; passes until they are used, --spp at most")->check(positive_seconds);
+    sub->add_option("--stats", o->stats, "Statistics as JSON; - for standard output")->check(named);
+    sub->add_option("--time", o->time_s,
+                    "Seconds to render; passes until they are used, --spp at most")
+        ->check(positive_seconds);
     sub->add_flag("--float", o->all_float, "All channels as 32-bit float");
     sub->add_flag("--no-progress", o->no_progress, "No progress on stderr");
     sub->add_flag("-v,--verbose", o->verbose, "Say more");
     sub->add_flag("-q,--quiet", o->quiet, "Say nothing but errors");
-    sub->footer("Examples:\n"
-                "  tessera render bunny.obj -o bunny.exr\n"
-                "  tessera render scene.toml -o out.exr --time 60 --preview out.png\n"
-                "  tessera render scene.toml -o crop.exr --crop 100,100,200,200 --aov Z --aov N");
+    sub->footer(
+        "Examples:\n"
+        "  tessera render bunny.obj -o bunny.exr\n"
+        "  tessera render scene.toml -o out.exr --time 60 --preview out.png\n"
+        "  tessera render scene.toml -o crop.exr --crop 100,100,200,200 --aov Z --aov N");
     sub->callback([o, &line] {
         line.run = [o, &line] {
             // With a time to fill and no count asked for, the time alone decides.

@@ -11,7 +11,8 @@ namespace {
 
 [[noreturn]] void usage(const std::string& message) { throw Error(ExitCode::usage, message); }
 
-/// "960x540" with separator 'x' -> {960, 540}; empty unless the text is whole numbers and separators only.
+/// "960x540" with separator 'x' -> {960, 540}; empty unless the text is whole numbers and
+/// separators only.
 std::vector<int> whole_numbers(const std::string& text, char separator) {
     std::vector<int> numbers;
     const char* at = text.data();
@@ -30,22 +31,27 @@ std::vector<int> whole_numbers(const std::string& text, char separator) {
 std::vector<int> parse_resolution(const std::string& text) {
     const std::vector<int> size = whole_numbers(text, 'x');
     const auto fits = [](int n) { return n >= 1 && n <= 65536; };
-    if (size.size() != 2 || !fits(size[0]) || !fits(size[1]) || std::int64_t{size[0]} * size[1] > 1 << 30) {
-        usage("--res " + text + ": must be WIDTHxHEIGHT in pixels, each 1 to 65536 and at most 2^30 in all, for example 960x540");
+    if (size.size() != 2 || !fits(size[0]) || !fits(size[1]) ||
+        std::int64_t{size[0]} * size[1] > 1 << 30) {
+        usage("--res " + text +
+              ": must be WIDTHxHEIGHT in pixels, each 1 to 65536 and at most 2^30 in all, for "
+              "example 960x540");
     }
     return size;
 }
 
 PixelWindow parse_crop(const std::string& text) {
     const std::vector<int> c = whole_numbers(text, ',');
-    if (c.size() != 4) usage("--crop " + text + ": must be X0,Y0,X1,Y1 in pixels, for example 100,100,200,200");
+    if (c.size() != 4)
+        usage("--crop " + text + ": must be X0,Y0,X1,Y1 in pixels, for example 100,100,200,200");
     return {c[0], c[1], c[2], c[3]};
 }
 
 void apply_crop(const PixelWindow& c, const std::string& text, FilmDesc& film) {
-    if (c.x0 < 0 || c.y0 < 0 || c.x1 > film.width || c.y1 > film.height || c.x0 >= c.x1 || c.y0 >= c.y1) {
-        usage("--crop " + text + ": must lie within the frame of " + std::to_string(film.width) + "x" +
-              std::to_string(film.height) + " pixels, with X0 < X1 and Y0 < Y1");
+    if (c.x0 < 0 || c.y0 < 0 || c.x1 > film.width || c.y1 > film.height || c.x0 >= c.x1 ||
+        c.y0 >= c.y1) {
+        usage("--crop " + text + ": must lie within the frame of " + std::to_string(film.width) +
+              "x" + std::to_string(film.height) + " pixels, with X0 < X1 and Y0 < Y1");
     }
     film.crop = c;
 }
@@ -58,15 +64,26 @@ void SceneOptions::add_to(CLI::App& app) {
     app.add_option("-r,--res", res, "Resolution, WIDTHxHEIGHT");
     app.add_option("--crop", crop, "Crop window X0,Y0,X1,Y1 in pixels of the full frame");
     app.add_option("--seed", seed, "Seed of the sampling");
-    app.add_option("--aov", aovs, "A pass beyond beauty: Z, N, P, albedo (repeatable; default all; 'beauty' alone: none)");
-    app.add_option("--set", set, "Any key of the scene file, for example --set camera.fov_deg=35 (repeatable)");
-    app.add_option("-t,--threads", threads, "Threads; 0: what affinity, cgroup and Slurm allow; -N: all but N")->check(CLI::Range(-4096, 4096));
-    app.add_option("--tile", tile, "Tile size in pixels, a multiple of 4")->check(CLI::Range(4, 4096));
-    app.add_option("--kernel", kernel, "Path kernel: basic, surface or full (default: the smallest that serves)")->check(CLI::IsMember({"basic", "surface", "full"}));
-    app.add_option("--isa", isa, "Embree's instruction set (default: the best of this machine)")->check(CLI::IsMember({"sse2", "sse4.2", "avx", "avx2", "avx512"}));
+    app.add_option(
+        "--aov", aovs,
+        "A pass beyond beauty: Z, N, P, albedo (repeatable; default all; 'beauty' alone: none)");
+    app.add_option("--set", set,
+                   "Any key of the scene file, for example --set camera.fov_deg=35 (repeatable)");
+    app.add_option("-t,--threads", threads,
+                   "Threads; 0: what affinity, cgroup and Slurm allow; -N: all but N")
+        ->check(CLI::Range(-4096, 4096));
+    app.add_option("--tile", tile, "Tile size in pixels, a multiple of 4")
+        ->check(CLI::Range(4, 4096));
+    app.add_option("--kernel", kernel,
+                   "Path kernel: basic, surface or full (default: the smallest that serves)")
+        ->check(CLI::IsMember({"basic", "surface", "full"}));
+    app.add_option("--isa", isa, "Embree's instruction set (default: the best of this machine)")
+        ->check(CLI::IsMember({"sse2", "sse4.2", "avx", "avx2", "avx512"}));
     app.add_flag("--strict", strict, "Warnings are errors");
     app.add_flag("--allow-external-assets", external, "Assets may lie outside the scene's folders");
-    for (CLI::Option* o : app.get_options()) o->multi_option_policy(o->get_expected_max() > 1 ? CLI::MultiOptionPolicy::TakeAll : CLI::MultiOptionPolicy::TakeLast);
+    for (CLI::Option* o : app.get_options())
+        o->multi_option_policy(o->get_expected_max() > 1 ? CLI::MultiOptionPolicy::TakeAll
+                                                         : CLI::MultiOptionPolicy::TakeLast);
 }
 
 SceneDesc SceneOptions::load(double& load_s) const {
@@ -74,7 +91,8 @@ SceneDesc SceneOptions::load(double& load_s) const {
     if (tile % 4 != 0) usage("--tile " + std::to_string(tile) + ": must be a multiple of 4");
     FilmLayers known;
     for (const std::string& name : aovs) {
-        if (!enable_layer(name, known)) usage("--aov " + name + ": unknown, there are beauty, Z, N, P and albedo");
+        if (!enable_layer(name, known))
+            usage("--aov " + name + ": unknown, there are beauty, Z, N, P and albedo");
     }
     const std::vector<int> size = res.empty() ? std::vector<int>{} : parse_resolution(res);
     const PixelWindow window = crop.empty() ? PixelWindow{} : parse_crop(crop);

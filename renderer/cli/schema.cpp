@@ -8,7 +8,8 @@
 namespace tessera {
 
 void add_schema(CLI::App& app, CommandLine& line) {
-    CLI::App* sub = app.add_subcommand("schema", "Print the JSON Schema of scene files (docs/scene.schema.json)");
+    CLI::App* sub = app.add_subcommand(
+        "schema", "Print the JSON Schema of scene files (docs/scene.schema.json)");
     sub->group("");  // for those who change the format: not in the help
     sub->callback([&line] {
         line.run = [] {

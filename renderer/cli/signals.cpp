@@ -19,7 +19,8 @@ extern "C" void on_signal(int number) {
         g_cancel.store(true);
         return;
     }
-    static constexpr char kStopped[] = "stopped by a signal before anything was rendered; nothing saved\n";
+    static constexpr char kStopped[] =
+        "stopped by a signal before anything was rendered; nothing saved\n";
     static constexpr char kAtOnce[] = "\nstopped at once by a second signal; nothing saved\n";
     const char* const text = first ? kStopped : kAtOnce;
     if (write(STDERR_FILENO, text, std::strlen(text)) < 0) {

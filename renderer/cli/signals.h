@@ -1,6 +1,7 @@
 #pragma once
-// SIGINT, SIGTERM and SIGHUP. Before the render there is nothing to save, so they end the program at once with
-// 128 + number; during it they ask the tiles to stop; a second one ends it at once. Call in one thread.
+// SIGINT, SIGTERM and SIGHUP. Before the render there is nothing to save, so they end the program
+// at once with 128 + number; during it they ask the tiles to stop; a second one ends it at once.
+// Call in one thread.
 
 #include <atomic>
 

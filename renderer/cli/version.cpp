@@ -10,22 +10,26 @@
 namespace tessera {
 
 void add_version(CLI::App& app, CommandLine& line) {
-    CLI::App* sub = app.add_subcommand("version", "Print versions of the program and of what it is built on");
+    CLI::App* sub =
+        app.add_subcommand("version", "Print versions of the program and of what it is built on");
     auto json = std::make_shared<bool>(false);
     sub->add_flag("--json", *json, "As JSON");
     sub->callback([json, &line] {
         line.run = [json] {
             const ThreadLimit limit = available_threads();
             if (*json) {
-                const nlohmann::ordered_json j = {{"version", TESSERA_VERSION}, {"embree", Accel::version()},
+                const nlohmann::ordered_json j = {{"version", TESSERA_VERSION},
+                                                  {"embree", Accel::version()},
 #ifdef TESSERA_MARCH
                                                   {"march", TESSERA_MARCH},
 #endif
-                                                  {"threads", limit.threads}, {"threads_because", limit.because}};
+                                                  {"threads", limit.threads},
+                                                  {"threads_because", limit.because}};
                 print_out(j.dump(2) + "\n");
             } else {
-                print_out(std::string("tessera ") + TESSERA_VERSION + "\nEmbree " + Accel::version() + "\nthreads " +
-                          std::to_string(limit.threads) + " (" + limit.because + ")\n");
+                print_out(std::string("tessera ") + TESSERA_VERSION + "\nEmbree " +
+                          Accel::version() + "\nthreads " + std::to_string(limit.threads) + " (" +
+                          limit.because + ")\n");
             }
             return 0;
         };

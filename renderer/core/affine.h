@@ -23,8 +23,8 @@ struct Affine {
     /// Transposed linear part times v.
     constexpr Vec3<T> transposed(Vec3<T> v) const { return {dot(x, v), dot(y, v), dot(z, v)}; }
     constexpr T determinant() const { return dot(x, cross(y, z)); }
-    /// Cofactor matrix times n: the inverse transpose up to the determinant's magnitude, with its sign kept
-    /// positive, so that a mirrored instance still has its normals on the outside.
+    /// Cofactor matrix times n: the inverse transpose up to the determinant's magnitude, with its
+    /// sign kept positive, so that a mirrored instance still has its normals on the outside.
     constexpr Vec3<T> normal(Vec3<T> n) const {
         const Vec3<T> m = cross(y, z) * n.x + cross(z, x) * n.y + cross(x, y) * n.z;
         return determinant() < T(0) ? -m : m;

@@ -9,14 +9,16 @@ namespace {
 
 double sane(double w) { return std::isfinite(w) && w > 0 ? w : 0.0; }
 
-// Writes the n + 1 cumulative shares of weights; returns their sum. All zero: uniform shares, sum 0.
+// Writes the n + 1 cumulative shares of weights; returns their sum. All zero: uniform shares, sum
+// 0.
 double cumulate(std::span<const double> weights, float* out) {
     const std::size_t n = weights.size();
     double sum = 0;
     for (double w : weights) sum += sane(w);
     double run = 0;
     for (std::size_t i = 0; i < n; ++i) {
-        out[i] = static_cast<float>(sum > 0 ? run / sum : static_cast<double>(i) / static_cast<double>(n));
+        out[i] = static_cast<float>(sum > 0 ? run / sum
+                                            : static_cast<double>(i) / static_cast<double>(n));
         run += sane(weights[i]);
     }
     out[n] = 1.0f;
@@ -30,7 +32,8 @@ struct Inverted {
 };
 
 Inverted invert(const float* cdf, int n, float u) {
-    const int i = std::clamp(static_cast<int>(std::upper_bound(cdf, cdf + n + 1, u) - cdf) - 1, 0, n - 1);
+    const int i =
+        std::clamp(static_cast<int>(std::upper_bound(cdf, cdf + n + 1, u) - cdf) - 1, 0, n - 1);
     const float share = cdf[i + 1] - cdf[i];
     const float position = share > 0.0f ? (u - cdf[i]) / share : 0.5f;
     return {i, std::min(position, 0x1.fffffep-1f), share * static_cast<float>(n)};
@@ -80,7 +83,8 @@ Distribution2D::Distribution2D(int width, int height, std::span<const double> we
     : width_(width), height_(height), rows_(height + 1), cells_(std::size_t(width + 1) * height) {
     std::vector<double> row_sums(height);
     for (int y = 0; y < height; ++y) {
-        row_sums[y] = cumulate(weights.subspan(std::size_t(y) * width, width), &cells_[std::size_t(y) * (width + 1)]);
+        row_sums[y] = cumulate(weights.subspan(std::size_t(y) * width, width),
+                               &cells_[std::size_t(y) * (width + 1)]);
     }
     mean_ = cumulate(row_sums, rows_.data()) / (static_cast<double>(width) * height);
 }

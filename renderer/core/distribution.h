@@ -1,5 +1,6 @@
 #pragma once
-// Piecewise-constant distributions over tables. Built in double; sums are exact enough for any table we meet.
+// Piecewise-constant distributions over tables. Built in double; sums are exact enough for any
+// table we meet.
 
 #include <cstddef>
 #include <cstdint>
@@ -38,8 +39,8 @@ private:
     std::vector<Cell> cells_;
 };
 
-/// A density over the unit square from a width x height table of weights, sampled by inversion (marginal in y, then
-/// conditional in x), so that stratified input stays stratified.
+/// A density over the unit square from a width x height table of weights, sampled by inversion
+/// (marginal in y, then conditional in x), so that stratified input stays stratified.
 class Distribution2D {
 public:
     struct Sample {

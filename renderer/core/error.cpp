@@ -11,7 +11,8 @@ std::string located(const SourceLoc& loc, const std::string& message) {
 }
 
 void add_once(std::vector<std::string>& lines, std::string line) {
-    if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(std::move(line));
+    if (std::find(lines.begin(), lines.end(), line) == lines.end())
+        lines.push_back(std::move(line));
 }
 
 }  // namespace
@@ -23,7 +24,8 @@ std::string to_string(const SourceLoc& loc) {
     return text;
 }
 
-Error::Error(ExitCode code, std::string message) : std::runtime_error(std::move(message)), code_(code) {}
+Error::Error(ExitCode code, std::string message)
+    : std::runtime_error(std::move(message)), code_(code) {}
 
 Error::Error(ExitCode code, const SourceLoc& loc, const std::string& message)
     : std::runtime_error(located(loc, message)), code_(code) {}

@@ -1,5 +1,6 @@
 #pragma once
-// Elementary functions of our own where the loop needs them: branch-free, the same bits on every machine.
+// Elementary functions of our own where the loop needs them: branch-free, the same bits on every
+// machine.
 
 #include <bit>
 #include <cmath>
@@ -13,13 +14,17 @@ struct SinCos {
     float sin, cos;
 };
 
-/// sin and cos of 2 pi u, u in [0, 1]. Absolute error below 1.5e-7 (Taylor to degree 9/8 on [-pi/4, pi/4]).
+/// sin and cos of 2 pi u, u in [0, 1]. Absolute error below 1.5e-7 (Taylor to degree 9/8 on [-pi/4,
+/// pi/4]).
 inline SinCos sincos_turn(float u) {
     const float quarter = std::floor(u * 4.0f + 0.5f);
     const float x = (u - quarter * 0.25f) * (2.0f * kPi);
     const float x2 = x * x;
-    const float s = x * (1.0f + x2 * (-1.66666667e-1f + x2 * (8.33333333e-3f + x2 * (-1.98412698e-4f + x2 * 2.7557319e-6f))));
-    const float c = 1.0f + x2 * (-0.5f + x2 * (4.16666667e-2f + x2 * (-1.38888889e-3f + x2 * 2.48015873e-5f)));
+    const float s =
+        x * (1.0f + x2 * (-1.66666667e-1f +
+                          x2 * (8.33333333e-3f + x2 * (-1.98412698e-4f + x2 * 2.7557319e-6f))));
+    const float c =
+        1.0f + x2 * (-0.5f + x2 * (4.16666667e-2f + x2 * (-1.38888889e-3f + x2 * 2.48015873e-5f)));
     const int q = static_cast<int>(quarter) & 3;
     const float ss = (q & 1) ? c : s;
     const float cc = (q & 1) ? s : c;
@@ -28,7 +33,7 @@ inline SinCos sincos_turn(float u) {
 
 /// acos on [-1, 1] (clamped). Abramowitz & Stegun 4.4.46: absolute error below 2e-7.
 inline float acos_poly(float x) {
-    const float a = std::fmin(std::fabs(x), 1.0f);
+    const float a = std::min(std::fabs(x), 1.0f);
     float p = -0.0012624911f;
     p = p * a + 0.0066700901f;
     p = p * a - 0.0170881256f;

@@ -6,7 +6,8 @@
 namespace tessera {
 namespace {
 
-std::atomic<int> g_level{static_cast<int>(LogLevel::normal)};  // the one process-wide setting: a sink, not data
+std::atomic<int> g_level{
+    static_cast<int>(LogLevel::normal)};  // the one process-wide setting: a sink, not data
 
 void put(const char* prefix, const std::string& line) {
     const std::string text = prefix + line + "\n";

@@ -36,7 +36,8 @@ int cgroup_cpus() {
             return std::max(1, static_cast<int>(std::ceil(std::atof(quota.c_str()) / period)));
         }
     }
-    std::ifstream quota_file("/sys/fs/cgroup/cpu/cpu.cfs_quota_us"), period_file("/sys/fs/cgroup/cpu/cpu.cfs_period_us");
+    std::ifstream quota_file("/sys/fs/cgroup/cpu/cpu.cfs_quota_us"),
+        period_file("/sys/fs/cgroup/cpu/cpu.cfs_period_us");
     double quota = 0, period = 0;
     if (quota_file >> quota && period_file >> period && quota > 0 && period > 0) {
         return std::max(1, static_cast<int>(std::ceil(quota / period)));
@@ -67,7 +68,9 @@ void take_over() {}
 
 class FlushDenormals : public tbb::task_scheduler_observer {
 public:
-    explicit FlushDenormals(tbb::task_arena& arena) : tbb::task_scheduler_observer(arena) { observe(true); }
+    explicit FlushDenormals(tbb::task_arena& arena) : tbb::task_scheduler_observer(arena) {
+        observe(true);
+    }
     ~FlushDenormals() override { observe(false); }
     void on_scheduler_entry(bool) override { flush_denormals(); }
 };
@@ -76,7 +79,8 @@ public:
 
 ThreadLimit available_threads() {
     ThreadLimit limit{affinity_cpus(), "affinity"};
-    if (const int quota = cgroup_cpus(); quota > 0 && quota < limit.threads) limit = {quota, "cgroup"};
+    if (const int quota = cgroup_cpus(); quota > 0 && quota < limit.threads)
+        limit = {quota, "cgroup"};
     if (const char* slurm = std::getenv("SLURM_CPUS_PER_TASK")) {
         const int cpus = std::atoi(slurm);
         if (cpus > 0 && cpus < limit.threads) limit = {cpus, "SLURM_CPUS_PER_TASK"};
@@ -91,7 +95,9 @@ void flush_denormals() noexcept {
 
 struct Workers::Impl {
     explicit Impl(int threads)
-        : control(tbb::global_control::max_allowed_parallelism, std::max(threads, 1)), arena(threads), flush(arena) {}
+        : control(tbb::global_control::max_allowed_parallelism, std::max(threads, 1)),
+          arena(threads),
+          flush(arena) {}
     tbb::global_control control;
     tbb::task_arena arena;
     FlushDenormals flush;
@@ -116,17 +122,20 @@ void Workers::execute(const std::function<void()>& task) {
 }
 
 void Workers::for_each(int count, const std::function<void(int)>& body) {
-    // A shared counter, not a split range: items start in order, which keeps neighbours in the cache together
-    // and the last ones small.
+    // A shared counter, not a split range: items start in order, which keeps neighbours in the
+    // cache together and the last ones small.
     std::atomic<int> next{0};
     execute([&] {
         hand_over();
-        tbb::parallel_for(0, threads_, [&](int) {
-            take_over();
-            flush_denormals();
-            for (int i = next.fetch_add(1); i < count; i = next.fetch_add(1)) body(i);
-            hand_over();
-        }, tbb::simple_partitioner{});
+        tbb::parallel_for(
+            0, threads_,
+            [&](int) {
+                take_over();
+                flush_denormals();
+                for (int i = next.fetch_add(1); i < count; i = next.fetch_add(1)) body(i);
+                hand_over();
+            },
+            tbb::simple_partitioner{});
         take_over();
     });
 }

@@ -7,7 +7,8 @@
 
 namespace tessera {
 
-/// How many threads this process may use: the least of affinity, cgroup quota and SLURM_CPUS_PER_TASK, at least 1.
+/// How many threads this process may use: the least of affinity, cgroup quota and
+/// SLURM_CPUS_PER_TASK, at least 1.
 struct ThreadLimit {
     int threads = 1;
     std::string because;  // "affinity", "cgroup", "SLURM_CPUS_PER_TASK"
@@ -26,7 +27,8 @@ public:
     Workers& operator=(const Workers&) = delete;
 
     int threads() const noexcept { return threads_; }
-    /// Runs task inside the arena: whatever it starts in parallel (Embree's build too) stays within the threads.
+    /// Runs task inside the arena: whatever it starts in parallel (Embree's build too) stays within
+    /// the threads.
     void execute(const std::function<void()>& task);
     /// Calls body(i) for i in [0, count), each once, started in order of i as threads get free.
     void for_each(int count, const std::function<void(int)>& body);

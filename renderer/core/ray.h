@@ -16,7 +16,7 @@ inline constexpr std::uint32_t kOtherRays = 2u;
 
 struct Ray {
     Vec3f o;
-    Vec3f d;                // need not be of unit length
+    Vec3f d;  // need not be of unit length
     float t_max = kInfinity;
     std::uint32_t mask = kOtherRays;
 };
@@ -45,7 +45,10 @@ struct alignas(64) RayPacket {
         mask[lane] = r.mask, id[lane] = static_cast<std::uint32_t>(lane), flags[lane] = 0;
     }
     Ray get(int lane) const {
-        return {{ox[lane], oy[lane], oz[lane]}, {dx[lane], dy[lane], dz[lane]}, t_max[lane], mask[lane]};
+        return {{ox[lane], oy[lane], oz[lane]},
+                {dx[lane], dy[lane], dz[lane]},
+                t_max[lane],
+                mask[lane]};
     }
 };
 
@@ -56,7 +59,9 @@ struct alignas(64) HitPacket {
     float u[kLanes], v[kLanes];
     std::uint32_t prim[kLanes], geom[kLanes], inst[kLanes];
 
-    Hit hit(int lane) const { return {prim[lane], geom[lane], inst[lane], u[lane], v[lane], ray.t_max[lane]}; }
+    Hit hit(int lane) const {
+        return {prim[lane], geom[lane], inst[lane], u[lane], v[lane], ray.t_max[lane]};
+    }
 };
 
 /// One bit per lane.

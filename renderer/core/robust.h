@@ -1,8 +1,8 @@
 #pragma once
-// Rays that leave a surface without hitting it: the origin is moved by a bound on the rounding error.
-// Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., section 6.8; the bounds there cover the
-// position. kSafety widens them for the rounding inside Embree's robust triangle test and its instance transform
-// (measured by the self-hit test in tests/stats).
+// Rays that leave a surface without hitting it: the origin is moved by a bound on the rounding
+// error. Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., section 6.8; the bounds
+// there cover the position. kSafety widens them for the rounding inside Embree's robust triangle
+// test and its instance transform (measured by the self-hit test in tests/stats).
 
 #include <bit>
 #include <cmath>
@@ -36,14 +36,17 @@ inline Vec3f offset_origin(Vec3f p, Vec3f error, Vec3f ng, Vec3f w) {
     const float d = dot(abs(ng), error) * kSafety;
     const Vec3f offset = dot(w, ng) < 0.0f ? ng * -d : ng * d;
     const Vec3f q = p + offset;
-    const auto away = [](float value, float o) { return o > 0.0f ? next_up(value) : (o < 0.0f ? next_down(value) : value); };
+    const auto away = [](float value, float o) {
+        return o > 0.0f ? next_up(value) : (o < 0.0f ? next_down(value) : value);
+    };
     return {away(q.x, offset.x), away(q.y, offset.y), away(q.z, offset.z)};
 }
 
-/// What Debian's Embree accepts without aborting: finite, and below its 1.844e18 limit with room to spare.
+/// What Debian's Embree accepts without aborting: finite, and below its 1.844e18 limit with room to
+/// spare.
 inline bool traceable(Vec3f o, Vec3f d) {
     constexpr float kLimit = 1e18f;
-    const float m = std::fmax(max_component(abs(o)), max_component(abs(d)));
+    const float m = std::max(max_component(abs(o)), max_component(abs(d)));
     return is_finite(o) && is_finite(d) && m <= kLimit && length2(d) > 0.0f;
 }
 

@@ -11,8 +11,8 @@ inline std::uint32_t reverse_bits(std::uint32_t x) {
     return (x >> 16) | (x << 16);
 }
 
-// Permutes bits upward only: each bit is flipped depending on the lower ones. On reversed numbers that is
-// Owen's nested scrambling. Vegdahl 2021.
+// Permutes bits upward only: each bit is flipped depending on the lower ones. On reversed numbers
+// that is Owen's nested scrambling. Vegdahl 2021.
 inline std::uint32_t laine_karras(std::uint32_t x, std::uint32_t seed) {
     x ^= x * 0x3d20adeau;
     x += seed;
@@ -22,8 +22,8 @@ inline std::uint32_t laine_karras(std::uint32_t x, std::uint32_t seed) {
     return x;
 }
 
-// Sobol's second dimension, bit-reversed: its direction numbers are the rows of Pascal's triangle mod 2, so that
-// the product is the polynomial P(x + 1), by halves: (x + 1)^(2^k) = x^(2^k) + 1.
+// Sobol's second dimension, bit-reversed: its direction numbers are the rows of Pascal's triangle
+// mod 2, so that the product is the polynomial P(x + 1), by halves: (x + 1)^(2^k) = x^(2^k) + 1.
 inline std::uint32_t sobol_1_reversed(std::uint32_t p) {
     p ^= (p >> 16) & 0x0000ffffu;
     p ^= (p >> 8) & 0x00ff00ffu;
@@ -37,7 +37,8 @@ inline float to_unit(std::uint32_t bits) {
     return static_cast<float>(static_cast<std::int32_t>(bits >> 8)) * 0x1p-24f;
 }
 
-inline void point(std::uint32_t seed, std::uint32_t reversed_index, std::uint32_t pair, float& x, float& y) {
+inline void point(std::uint32_t seed, std::uint32_t reversed_index, std::uint32_t pair, float& x,
+                  float& y) {
     const std::uint32_t s0 = hash_combine(seed, pair);
     const std::uint32_t s1 = hash_u32(s0 + 0x9e3779b9u);
     const std::uint32_t s2 = hash_u32(s0 + 0x3c6ef372u);
@@ -48,10 +49,11 @@ inline void point(std::uint32_t seed, std::uint32_t reversed_index, std::uint32_
 
 }  // namespace
 
-void sample_pairs(const std::uint32_t (&pixel_seeds)[kLanes], std::uint32_t index, std::uint32_t pair,
-                  SamplePairs& out) noexcept {
+void sample_pairs(const std::uint32_t (&pixel_seeds)[kLanes], std::uint32_t index,
+                  std::uint32_t pair, SamplePairs& out) noexcept {
     const std::uint32_t reversed = reverse_bits(index);
-    for (int lane = 0; lane < kLanes; ++lane) point(pixel_seeds[lane], reversed, pair, out.x[lane], out.y[lane]);
+    for (int lane = 0; lane < kLanes; ++lane)
+        point(pixel_seeds[lane], reversed, pair, out.x[lane], out.y[lane]);
 }
 
 Vec2f sample_pair(std::uint32_t pixel_seed, std::uint32_t index, std::uint32_t pair) noexcept {

@@ -1,9 +1,10 @@
 #pragma once
 // Owen-scrambled Sobol points as a pure function of (pixel, sample index, dimension pair, seed).
 //
-// Every pair of dimensions is Sobol's first two (a (0,2)-sequence), its index shuffled and its values scrambled by
-// hashed nested permutations: Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020, with the
-// hash of Vegdahl, "Building a Better LK Hash", 2021. Sixteen lanes at a time, so that the compiler vectorises.
+// Every pair of dimensions is Sobol's first two (a (0,2)-sequence), its index shuffled and its
+// values scrambled by hashed nested permutations: Burley, "Practical Hash-based Owen Scrambling",
+// JCGT 9(4), 2020, with the hash of Vegdahl, "Building a Better LK Hash", 2021. Sixteen lanes at a
+// time, so that the compiler vectorises.
 
 #include <cstdint>
 
@@ -12,7 +13,8 @@
 
 namespace tessera {
 
-/// Dimension pairs: the camera's, then kPairsPerVertex for each path vertex. A new use takes a new pair.
+/// Dimension pairs: the camera's, then kPairsPerVertex for each path vertex. A new use takes a new
+/// pair.
 namespace dim {
 inline constexpr std::uint32_t kFilter = 0;
 inline constexpr std::uint32_t kLens = 1;
@@ -40,8 +42,10 @@ constexpr std::uint32_t hash_combine(std::uint32_t a, std::uint32_t b) {
 
 /// Seed of a pixel's scrambles. Pixels are absolute in the frame.
 constexpr std::uint32_t pixel_seed(int x, int y, std::uint64_t seed) {
-    const std::uint32_t s = hash_combine(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32));
-    return hash_combine(hash_combine(static_cast<std::uint32_t>(x), s), static_cast<std::uint32_t>(y) ^ 0x68bc21ebu);
+    const std::uint32_t s =
+        hash_combine(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32));
+    return hash_combine(hash_combine(static_cast<std::uint32_t>(x), s),
+                        static_cast<std::uint32_t>(y) ^ 0x68bc21ebu);
 }
 
 struct SamplePairs {
@@ -51,8 +55,8 @@ struct SamplePairs {
 };
 
 /// The points of one dimension pair for sixteen pixels at one sample index; each in [0, 1).
-void sample_pairs(const std::uint32_t (&pixel_seeds)[kLanes], std::uint32_t index, std::uint32_t pair,
-                  SamplePairs& out) noexcept;
+void sample_pairs(const std::uint32_t (&pixel_seeds)[kLanes], std::uint32_t index,
+                  std::uint32_t pair, SamplePairs& out) noexcept;
 
 /// One lane of the above.
 Vec2f sample_pair(std::uint32_t pixel_seed, std::uint32_t index, std::uint32_t pair) noexcept;

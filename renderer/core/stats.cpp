@@ -6,19 +6,27 @@ namespace tessera {
 
 const char* to_string(InvalidCause cause) {
     switch (cause) {
-        case InvalidCause::camera_ray: return "camera_ray";
-        case InvalidCause::bounce_ray: return "bounce_ray";
-        case InvalidCause::shadow_ray: return "shadow_ray";
-        case InvalidCause::hit: return "hit";
-        case InvalidCause::radiance: return "radiance";
-        case InvalidCause::count: break;
+        case InvalidCause::camera_ray:
+            return "camera_ray";
+        case InvalidCause::bounce_ray:
+            return "bounce_ray";
+        case InvalidCause::shadow_ray:
+            return "shadow_ray";
+        case InvalidCause::hit:
+            return "hit";
+        case InvalidCause::radiance:
+            return "radiance";
+        case InvalidCause::count:
+            break;
     }
     return "unknown";
 }
 
 std::string to_json(const Statistics& s) {
     using nlohmann::ordered_json;
-    const auto rate = [](std::uint64_t n, double seconds) { return seconds > 0 ? static_cast<double>(n) / seconds : 0.0; };
+    const auto rate = [](std::uint64_t n, double seconds) {
+        return seconds > 0 ? static_cast<double>(n) / seconds : 0.0;
+    };
     ordered_json invalid = ordered_json::object();
     std::uint64_t invalid_total = 0;
     for (int i = 0; i < kInvalidCauses; ++i) {
@@ -42,13 +50,28 @@ std::string to_json(const Statistics& s) {
         {"seed", s.seed},
         {"threads", s.threads},
         {"tile", s.tile},
-        {"seconds", {{"load", s.load_s}, {"build", s.build_s}, {"render", s.render_s}, {"write", s.write_s}}},
+        {"seconds",
+         {{"load", s.load_s}, {"build", s.build_s}, {"render", s.render_s}, {"write", s.write_s}}},
         {"samples", s.samples},
         {"samples_per_second", rate(s.samples, s.render_s)},
-        {"rays", {{"camera", s.rays.camera}, {"bounce", s.rays.bounce}, {"shadow", s.rays.shadow}, {"total", s.rays.total()}}},
+        {"rays",
+         {{"camera", s.rays.camera},
+          {"bounce", s.rays.bounce},
+          {"shadow", s.rays.shadow},
+          {"total", s.rays.total()}}},
         {"rays_per_second", rate(s.rays.total(), s.render_s)},
-        {"geometry", {{"triangles_stored", s.triangles_stored}, {"triangles_instanced", s.triangles_instanced}, {"instances", s.instances}, {"lights", s.lights}}},
-        {"memory_bytes", {{"peak", s.memory_peak}, {"geometry", s.memory_geometry}, {"bvh", s.memory_bvh}, {"textures", s.memory_textures}, {"lights", s.memory_lights}, {"film", s.memory_film}}},
+        {"geometry",
+         {{"triangles_stored", s.triangles_stored},
+          {"triangles_instanced", s.triangles_instanced},
+          {"instances", s.instances},
+          {"lights", s.lights}}},
+        {"memory_bytes",
+         {{"peak", s.memory_peak},
+          {"geometry", s.memory_geometry},
+          {"bvh", s.memory_bvh},
+          {"textures", s.memory_textures},
+          {"lights", s.memory_lights},
+          {"film", s.memory_film}}},
         {"invalid", invalid},
         {"half", {{"clamped", s.half_clamped}, {"non_finite", s.half_non_finite}}},
         {"left_out", left_out},

@@ -42,7 +42,9 @@ struct Vec3 {
 };
 
 template <class T>
-constexpr Vec3<T> operator*(T s, Vec3<T> a) { return a * s; }
+constexpr Vec3<T> operator*(T s, Vec3<T> a) {
+    return a * s;
+}
 
 using Vec2f = Vec2<float>;
 using Vec3f = Vec3<float>;
@@ -51,19 +53,29 @@ using Vec3d = Vec3<double>;
 using Color = Vec3f;
 
 template <class T>
-constexpr T dot(Vec3<T> a, Vec3<T> b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+constexpr T dot(Vec3<T> a, Vec3<T> b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 template <class T>
 constexpr Vec3<T> cross(Vec3<T> a, Vec3<T> b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 template <class T>
-constexpr T length2(Vec3<T> a) { return dot(a, a); }
+constexpr T length2(Vec3<T> a) {
+    return dot(a, a);
+}
 template <class T>
-T length(Vec3<T> a) { return std::sqrt(dot(a, a)); }
+T length(Vec3<T> a) {
+    return std::sqrt(dot(a, a));
+}
 template <class T>
-Vec3<T> normalize(Vec3<T> a) { return a / length(a); }
+Vec3<T> normalize(Vec3<T> a) {
+    return a / length(a);
+}
 template <class T>
-Vec3<T> abs(Vec3<T> a) { return {std::abs(a.x), std::abs(a.y), std::abs(a.z)}; }
+Vec3<T> abs(Vec3<T> a) {
+    return {std::abs(a.x), std::abs(a.y), std::abs(a.z)};
+}
 template <class T>
 constexpr Vec3<T> min(Vec3<T> a, Vec3<T> b) {
     return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
@@ -73,13 +85,21 @@ constexpr Vec3<T> max(Vec3<T> a, Vec3<T> b) {
     return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
 }
 template <class T>
-constexpr T max_component(Vec3<T> a) { return std::max(a.x, std::max(a.y, a.z)); }
+constexpr T max_component(Vec3<T> a) {
+    return std::max(a.x, std::max(a.y, a.z));
+}
 template <class T>
-constexpr T min_component(Vec3<T> a) { return std::min(a.x, std::min(a.y, a.z)); }
+constexpr T min_component(Vec3<T> a) {
+    return std::min(a.x, std::min(a.y, a.z));
+}
 template <class T>
-bool is_finite(Vec3<T> a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
+bool is_finite(Vec3<T> a) {
+    return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+}
 template <class T>
-constexpr Vec3<T> lerp(Vec3<T> a, Vec3<T> b, T t) { return a * (T(1) - t) + b * t; }
+constexpr Vec3<T> lerp(Vec3<T> a, Vec3<T> b, T t) {
+    return a * (T(1) - t) + b * t;
+}
 
 constexpr float sqr(float x) { return x * x; }
 constexpr float clamp01(float x) { return x < 0.0f ? 0.0f : (x > 1.0f ? 1.0f : x); }

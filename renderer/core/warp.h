@@ -15,8 +15,8 @@ inline Vec2f warp_disc(Vec2f u) {
     return {r * a.cos, r * a.sin};
 }
 
-/// Unit disc, concentric: strata stay compact. Shirley & Chiu, "A Low Distortion Map Between Disk and Square",
-/// Journal of Graphics Tools 2(3), 1997.
+/// Unit disc, concentric: strata stay compact. Shirley & Chiu, "A Low Distortion Map Between Disk
+/// and Square", Journal of Graphics Tools 2(3), 1997.
 inline Vec2f warp_disc_concentric(Vec2f u) {
     const float a = 2.0f * u.x - 1.0f, b = 2.0f * u.y - 1.0f;
     if (a == 0.0f && b == 0.0f) return {0, 0};
@@ -52,7 +52,8 @@ inline Vec2f warp_triangle(Vec2f u) {
     return {u.x - y, y};
 }
 
-/// Cone about +z with 1 - cos(half angle) = one_minus_cos; uniform density 1 / (2 pi one_minus_cos).
+/// Cone about +z with 1 - cos(half angle) = one_minus_cos; uniform density 1 / (2 pi
+/// one_minus_cos).
 inline Vec3f warp_cone(Vec2f u, float one_minus_cos) {
     const float k = u.x * one_minus_cos;  // 1 - cos(theta), without cancellation
     const float r = safe_sqrt(k * (2.0f - k));

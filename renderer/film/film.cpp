@@ -4,7 +4,9 @@ namespace tessera {
 namespace {
 
 template <class T>
-std::size_t capacity_bytes(const std::vector<T>& v) { return v.capacity() * sizeof(T); }
+std::size_t capacity_bytes(const std::vector<T>& v) {
+    return v.capacity() * sizeof(T);
+}
 
 }  // namespace
 
@@ -19,7 +21,8 @@ bool enable_layer(const std::string& name, FilmLayers& layers) {
 
 std::vector<std::string> layer_names() { return {"beauty", "Z", "N", "P", "albedo"}; }
 
-Film::Film(const PixelWindow& window, const FilmLayers& layers) : window_(window), enabled_(layers) {
+Film::Film(const PixelWindow& window, const FilmLayers& layers)
+    : window_(window), enabled_(layers) {
     const std::size_t n = std::size_t(window.width()) * window.height();
     beauty_.resize(n);
     if (layers.albedo) albedo_.resize(n);
@@ -58,7 +61,8 @@ std::vector<Layer> Film::layers() const {
     }
     out.push_back(std::move(beauty));
     if (enabled_.z) out.push_back({"", {"Z"}, LayerKind::data, depth_});
-    const auto mean = [&](const char* name, std::vector<std::string> channels, LayerKind kind, const std::vector<Triple>& sums) {
+    const auto mean = [&](const char* name, std::vector<std::string> channels, LayerKind kind,
+                          const std::vector<Triple>& sums) {
         Layer layer{name, std::move(channels), kind, std::vector<float>(n * 3)};
         for (std::size_t i = 0; i < n; ++i) {
             // Colour is premultiplied by coverage as beauty is; data is the mean over what was hit.
@@ -74,7 +78,8 @@ std::vector<Layer> Film::layers() const {
     if (enabled_.p) {
         Layer layer{"P", {"X", "Y", "Z"}, LayerKind::data, std::vector<float>(n * 3)};
         for (std::size_t i = 0; i < n; ++i) {
-            layer.pixels[i * 3] = position_[i].x, layer.pixels[i * 3 + 1] = position_[i].y, layer.pixels[i * 3 + 2] = position_[i].z;
+            layer.pixels[i * 3] = position_[i].x, layer.pixels[i * 3 + 1] = position_[i].y,
+                             layer.pixels[i * 3 + 2] = position_[i].z;
         }
         out.push_back(std::move(layer));
     }
@@ -83,7 +88,8 @@ std::vector<Layer> Film::layers() const {
 }
 
 std::size_t Film::bytes() const noexcept {
-    return capacity_bytes(beauty_) + capacity_bytes(albedo_) + capacity_bytes(normal_) + capacity_bytes(depth_) + capacity_bytes(position_);
+    return capacity_bytes(beauty_) + capacity_bytes(albedo_) + capacity_bytes(normal_) +
+           capacity_bytes(depth_) + capacity_bytes(position_);
 }
 
 }  // namespace tessera

@@ -1,5 +1,6 @@
 #pragma once
-// Samples to layers. Tiles own disjoint pixels and write straight into the film: no locks, no merging.
+// Samples to layers. Tiles own disjoint pixels and write straight into the film: no locks, no
+// merging.
 
 #include <cstdint>
 #include <string>
@@ -13,11 +14,11 @@ namespace tessera {
 /// What one camera path gives to its pixel.
 struct PathSample {
     Color radiance{0.0f};
-    float alpha = 0;       // 1 where the camera ray hit something
-    bool hit = false;      // the fields below are there; only with alpha 1
-    float z = 0;           // camera-space depth
-    Vec3f p;               // world position
-    Vec3f n{};             // shading normal facing the camera
+    float alpha = 0;   // 1 where the camera ray hit something
+    bool hit = false;  // the fields below are there; only with alpha 1
+    float z = 0;       // camera-space depth
+    Vec3f p;           // world position
+    Vec3f n{};         // shading normal facing the camera
     Color albedo{0.0f};
 };
 
@@ -38,7 +39,8 @@ public:
     Film(const PixelWindow& window, const FilmLayers& layers);
 
     const PixelWindow& window() const noexcept { return window_; }
-    /// x, y absolute in the frame, within the window. One thread at a time per pixel; samples in index order.
+    /// x, y absolute in the frame, within the window. One thread at a time per pixel; samples in
+    /// index order.
     void add(int x, int y, const PathSample& s) noexcept;
     /// Means of what was added.
     std::vector<Layer> layers() const;
@@ -52,7 +54,10 @@ private:
     };
     struct Triple {
         double x = 0, y = 0, z = 0;
-        void add(Vec3f v) { x += static_cast<double>(v.x), y += static_cast<double>(v.y), z += static_cast<double>(v.z); }
+        void add(Vec3f v) {
+            x += static_cast<double>(v.x), y += static_cast<double>(v.y),
+                z += static_cast<double>(v.z);
+        }
     };
     PixelWindow window_;
     FilmLayers enabled_;

@@ -10,13 +10,18 @@ constexpr double kPiD = 3.14159265358979323846;
 // Value at x in [-0.5, 0.5] of the support.
 double value(PixelFilter filter, double x) {
     switch (filter) {
-        case PixelFilter::box: return 1;
-        case PixelFilter::triangle: return 1 - 2 * std::abs(x);
-        case PixelFilter::gaussian: return std::exp(-18 * x * x) - std::exp(-4.5);  // sigma = width / 6
+        case PixelFilter::box:
+            return 1;
+        case PixelFilter::triangle:
+            return 1 - 2 * std::abs(x);
+        case PixelFilter::gaussian:
+            return std::exp(-18 * x * x) - std::exp(-4.5);  // sigma = width / 6
         case PixelFilter::blackman_harris: {
-            // Harris, "On the Use of Windows for Harmonic Analysis", Proc. IEEE 66(1), 1978, 4-term.
+            // Harris, "On the Use of Windows for Harmonic Analysis", Proc. IEEE 66(1), 1978,
+            // 4-term.
             const double a = 2 * kPiD * (x + 0.5);
-            return 0.35875 - 0.48829 * std::cos(a) + 0.14128 * std::cos(2 * a) - 0.01168 * std::cos(3 * a);
+            return 0.35875 - 0.48829 * std::cos(a) + 0.14128 * std::cos(2 * a) -
+                   0.01168 * std::cos(3 * a);
         }
     }
     return 1;

@@ -1,7 +1,7 @@
 #pragma once
-// The pixel filter, importance-sampled: a sample is placed around its own pixel with the filter's density and then
-// counts 1 there, so that no sample touches two pixels.
-// Ernst, Stamminger, Greiner, "Filter Importance Sampling", IEEE Symposium on Interactive Ray Tracing 2006.
+// The pixel filter, importance-sampled: a sample is placed around its own pixel with the filter's
+// density and then counts 1 there, so that no sample touches two pixels. Ernst, Stamminger,
+// Greiner, "Filter Importance Sampling", IEEE Symposium on Interactive Ray Tracing 2006.
 
 #include <array>
 

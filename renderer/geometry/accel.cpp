@@ -73,24 +73,30 @@ struct Accel::Impl {
         if (!options.isa.empty()) config += ",isa=" + options.isa;
         device = rtcNewDevice(config.c_str());
         if (!device) {
-            throw Error(ExitCode::bug, "embree: no device for '" + config + "' (error " +
-                                           std::to_string(rtcGetDeviceError(nullptr)) + ")");
+            const RTCError why = rtcGetDeviceError(nullptr);
+            throw Error(
+                why == RTC_ERROR_OUT_OF_MEMORY ? ExitCode::memory : ExitCode::bug,
+                "embree: no device for '" + config + "' (error " + std::to_string(why) + ")");
         }
         rtcSetDeviceErrorFunction(
             device,
             [](void* self, RTCError code, const char* text) {
                 auto* impl = static_cast<Impl*>(self);
-                if (impl->error == RTC_ERROR_NONE) impl->error = code, impl->message = text ? text : "";
+                if (impl->error == RTC_ERROR_NONE)
+                    impl->error = code, impl->message = text ? text : "";
             },
             this);
         rtcSetDeviceMemoryMonitorFunction(
-            device, [](void* self, ssize_t n, bool) { return static_cast<Impl*>(self)->bytes += n, true; }, this);
+            device,
+            [](void* self, ssize_t n, bool) { return static_cast<Impl*>(self)->bytes += n, true; },
+            this);
     }
 
     void check(const char* what) const {
         if (error == RTC_ERROR_NONE) return;
         const bool memory = error == RTC_ERROR_OUT_OF_MEMORY;
-        throw Error(memory ? ExitCode::memory : ExitCode::bug, std::string("embree: ") + what + ": " + message);
+        throw Error(memory ? ExitCode::memory : ExitCode::bug,
+                    std::string("embree: ") + what + ": " + message);
     }
 
     RTCScene new_scene() const {
@@ -109,13 +115,16 @@ struct Accel::Impl {
     }
 
     RTCGeometry mesh_part(const Mesh& mesh, const MeshPart& part) const {
-        RTCGeometry g = rtcNewGeometry(device, part.quads ? RTC_GEOMETRY_TYPE_QUAD : RTC_GEOMETRY_TYPE_TRIANGLE);
+        RTCGeometry g = rtcNewGeometry(
+            device, part.quads ? RTC_GEOMETRY_TYPE_QUAD : RTC_GEOMETRY_TYPE_TRIANGLE);
         const std::size_t corners = part.quads ? 4 : 3;
-        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(), 0,
-                                   sizeof(Vec3f), mesh.positions.size() - 1);
-        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, part.quads ? RTC_FORMAT_UINT4 : RTC_FORMAT_UINT3,
-                                   mesh.position_index.data(), mesh.corner(part.first_face) * sizeof(std::uint32_t),
-                                   corners * sizeof(std::uint32_t), part.faces);
+        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                   mesh.positions.data(), 0, sizeof(Vec3f),
+                                   mesh.positions.size() - 1);
+        rtcSetSharedGeometryBuffer(
+            g, RTC_BUFFER_TYPE_INDEX, 0, part.quads ? RTC_FORMAT_UINT4 : RTC_FORMAT_UINT3,
+            mesh.position_index.data(), mesh.corner(part.first_face) * sizeof(std::uint32_t),
+            corners * sizeof(std::uint32_t), part.faces);
         if (part.cutout) {
             rtcSetGeometryIntersectFilterFunction(g, filter_opacity);
             rtcSetGeometryOccludedFilterFunction(g, filter_opacity);
@@ -125,25 +134,26 @@ struct Accel::Impl {
 
     RTCGeometry sphere(const Sphere& s) const {
         RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
-        auto* v = static_cast<float*>(
-            rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), 1));
+        auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(
+            g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), 1));
         if (v) v[0] = s.center.x, v[1] = s.center.y, v[2] = s.center.z, v[3] = s.radius;
         return g;
     }
 
     RTCGeometry disc(const Disc& d) const {
         RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT);
-        auto* v = static_cast<float*>(
-            rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), 1));
-        auto* n = static_cast<float*>(
-            rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_NORMAL, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 1));
+        auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(
+            g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), 1));
+        auto* n = static_cast<float*>(rtcSetNewGeometryBuffer(
+            g, RTC_BUFFER_TYPE_NORMAL, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 1));
         if (v) v[0] = d.center.x, v[1] = d.center.y, v[2] = d.center.z, v[3] = d.radius;
         if (n) n[0] = d.normal.x, n[1] = d.normal.y, n[2] = d.normal.z;
         return g;
     }
 
     // Attaches every geometry of a shape from id `first`; returns how many there were.
-    unsigned attach_shape(const Geometry& geometry, const Placement& placed, RTCScene s, unsigned first) const {
+    unsigned attach_shape(const Geometry& geometry, const Placement& placed, RTCScene s,
+                          unsigned first) const {
         switch (placed.kind) {
             case PlacedKind::sphere:
                 attach(s, sphere(geometry.spheres[placed.shape]), first, placed.camera_visible);
@@ -151,11 +161,13 @@ struct Accel::Impl {
             case PlacedKind::disc:
                 attach(s, disc(geometry.discs[placed.shape]), first, placed.camera_visible);
                 return 1;
-            case PlacedKind::mesh: break;
+            case PlacedKind::mesh:
+                break;
         }
         const Mesh& mesh = geometry.meshes[placed.shape];
         unsigned id = first;
-        for (const MeshPart& part : mesh.parts) attach(s, mesh_part(mesh, part), id++, placed.camera_visible);
+        for (const MeshPart& part : mesh.parts)
+            attach(s, mesh_part(mesh, part), id++, placed.camera_visible);
         return id - first;
     }
 
@@ -173,7 +185,8 @@ struct Accel::Impl {
     RTCGeometry instance(RTCScene of, const Affinef& m) const {
         RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
         rtcSetGeometryInstancedScene(g, of);
-        const float columns[12] = {m.x.x, m.x.y, m.x.z, m.y.x, m.y.y, m.y.z, m.z.x, m.z.y, m.z.z, m.p.x, m.p.y, m.p.z};
+        const float columns[12] = {m.x.x, m.x.y, m.x.z, m.y.x, m.y.y, m.y.z,
+                                   m.z.x, m.z.y, m.z.z, m.p.x, m.p.y, m.p.z};
         rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
         return g;
     }
@@ -181,13 +194,15 @@ struct Accel::Impl {
     static std::string isa_name(RTCDevice, const std::string& asked) {
         if (!asked.empty()) return asked;
         __builtin_cpu_init();
-        if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl")) return "avx512";
+        if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl"))
+            return "avx512";
         if (__builtin_cpu_supports("avx2")) return "avx2";
         return __builtin_cpu_supports("avx") ? "avx" : "sse";
     }
 };
 
-Accel::Accel(const Geometry& geometry, const AccelOptions& options) : impl_(std::make_unique<Impl>()) {
+Accel::Accel(const Geometry& geometry, const AccelOptions& options)
+    : impl_(std::make_unique<Impl>()) {
     impl_->open(options);
     impl_->opacity = options.opacity;
     impl_->scene = impl_->new_scene();
@@ -196,8 +211,9 @@ Accel::Accel(const Geometry& geometry, const AccelOptions& options) : impl_(std:
     for (std::uint32_t i = 0; i < geometry.placements.size(); ++i) {
         const Placement& placed = geometry.placements[i];
         if (placed.instanced) {
-            impl_->attach(impl_->scene, impl_->instance(impl_->shape_scene(geometry, placed), placed.to_world), id++,
-                          placed.camera_visible);
+            impl_->attach(impl_->scene,
+                          impl_->instance(impl_->shape_scene(geometry, placed), placed.to_world),
+                          id++, placed.camera_visible);
             slots_.push_back({i, 0});
         } else {
             const unsigned parts = impl_->attach_shape(geometry, placed, impl_->scene, id);

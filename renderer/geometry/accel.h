@@ -11,8 +11,8 @@
 
 namespace tessera {
 
-/// Asked for each hit on a cut-out part: does the ray stop here? Must depend on its arguments only (Embree may ask
-/// twice for one hit). seed: the path's own number, see Accel::intersect.
+/// Asked for each hit on a cut-out part: does the ray stop here? Must depend on its arguments only
+/// (Embree may ask twice for one hit). seed: the path's own number, see Accel::intersect.
 struct OpacityTest {
     const void* scene = nullptr;
     bool (*stops)(const void* scene, const Hit& hit, std::uint32_t seed) noexcept = nullptr;
@@ -20,7 +20,7 @@ struct OpacityTest {
 
 struct AccelOptions {
     int threads = 1;
-    std::string isa;               // Embree's device option, "" = the best there is
+    std::string isa;  // Embree's device option, "" = the best there is
     OpacityTest opacity;
 };
 
@@ -32,16 +32,20 @@ struct HitTarget {
 
 class Accel {
 public:
-    /// Builds; call inside the workers' arena. Throws Error(memory) or Error(bug). geometry must outlive this.
+    /// Builds; call inside the workers' arena. Throws Error(memory) or Error(bug). geometry must
+    /// outlive this.
     Accel(const Geometry& geometry, const AccelOptions& options);
     ~Accel();
     Accel(const Accel&) = delete;
     Accel& operator=(const Accel&) = delete;
 
-    /// Nearest hit of one ray. The ray has been checked by traceable(). seed feeds the opacity test.
+    /// Nearest hit of one ray. The ray has been checked by traceable(). seed feeds the opacity
+    /// test.
     Hit intersect(const Ray& ray, std::uint32_t seed) const noexcept;
-    /// The same for the lanes of a packet; hits are left in the packet. Bits of a lane do not depend on the others.
-    void intersect(HitPacket& rays, LaneMask lanes, const std::uint32_t (&seeds)[kLanes], bool coherent) const noexcept;
+    /// The same for the lanes of a packet; hits are left in the packet. Bits of a lane do not
+    /// depend on the others.
+    void intersect(HitPacket& rays, LaneMask lanes, const std::uint32_t (&seeds)[kLanes],
+                   bool coherent) const noexcept;
     bool occluded(const Ray& ray, std::uint32_t seed) const noexcept;
     /// Lanes of `lanes` that are blocked. Rays are consumed.
     LaneMask occluded(RayPacket& rays, LaneMask lanes, const std::uint32_t (&seeds)[kLanes],

@@ -9,7 +9,8 @@
 
 namespace tessera::embree {
 
-// The per-call context: Embree 3 knows RTCIntersectContext, Embree 4 a query context plus arguments.
+// The per-call context: Embree 3 knows RTCIntersectContext, Embree 4 a query context plus
+// arguments.
 #if TESSERA_EMBREE >= 4
 struct Context : RTCRayQueryContext {
     Context() { rtcInitRayQueryContext(this); }
@@ -44,7 +45,9 @@ inline void occluded1(RTCScene s, Context& c, RTCRay* r) {
     OccludedArgs args(c, false);
     rtcOccluded1(s, r, &args);
 }
-inline Context* context_of(const RTCFilterFunctionNArguments* a) { return static_cast<Context*>(a->context); }
+inline Context* context_of(const RTCFilterFunctionNArguments* a) {
+    return static_cast<Context*>(a->context);
+}
 #else
 struct Context : RTCIntersectContext {
     Context() { rtcInitIntersectContext(this); }
@@ -62,7 +65,9 @@ inline void occluded16(const int* valid, RTCScene s, Context& c, RTCRay16* r, bo
     rtcOccluded16(valid, s, &c, r);
 }
 inline void occluded1(RTCScene s, Context& c, RTCRay* r) { rtcOccluded1(s, &c, r); }
-inline Context* context_of(const RTCFilterFunctionNArguments* a) { return static_cast<Context*>(a->context); }
+inline Context* context_of(const RTCFilterFunctionNArguments* a) {
+    return static_cast<Context*>(a->context);
+}
 #endif
 
 }  // namespace tessera::embree

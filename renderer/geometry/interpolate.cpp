@@ -1,5 +1,6 @@
 #include "renderer/geometry/interpolate.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "renderer/core/robust.h"
@@ -18,62 +19,82 @@ Corners corners_of(const Mesh& mesh, std::uint32_t face, float u, float v) {
     return {first + w.a, first + w.b, first + w.c, w.wa, w.wb, w.wc};
 }
 
-// Moves a point's data from the shape's space to the scene's, with the error that the map adds (PBRT 4e, eq. 6.29 ff).
+// Moves a point's data from the shape's space to the scene's, with the error that the map adds
+// (PBRT 4e, eq. 6.29 ff).
 void to_world(const Placement& placed, SurfacePoint& s) {
     const Affinef& m = placed.to_world;
     const Vec3f p = s.p;
     s.p = m.point(p);
-    const Vec3f magnitude = abs(m.x) * std::fabs(p.x) + abs(m.y) * std::fabs(p.y) + abs(m.z) * std::fabs(p.z) + abs(m.p);
+    const Vec3f magnitude = abs(m.x) * std::fabs(p.x) + abs(m.y) * std::fabs(p.y) +
+                            abs(m.z) * std::fabs(p.z) + abs(m.p);
     const Vec3f carried = abs(m.x) * s.p_error.x + abs(m.y) * s.p_error.y + abs(m.z) * s.p_error.z;
-    // Embree takes the ray into the shape's space; what it rounds there comes back grown by the map's condition.
+    // Embree takes the ray into the shape's space; what it rounds there comes back grown by the
+    // map's condition.
     s.p_error = carried * (1.0f + gamma_bound(3)) + magnitude * gamma_bound(4) +
                 Vec3f(max_component(magnitude) * placed.condition * gamma_bound(2));
-    s.ng = normalize(m.normal(s.ng));
-    const Vec3f n = m.normal(s.ns);
-    s.ns = normalize(n);
+    // Normals by the cofactors, their sign kept outward under a mirror.
+    Affinef cofactor(cross(m.y, m.z), cross(m.z, m.x), cross(m.x, m.y), {});
+    const float sign = dot(m.x, cofactor.x) < 0.0f ? -1.0f : 1.0f;
+    s.ng = normalize(cofactor.vector(s.ng)) * sign;
+    s.ns = normalize(cofactor.vector(s.ns)) * sign;
+}
+
+void texture_frame_to_world(const Affinef& m, SurfacePoint& s) {
     s.dpdu = m.vector(s.dpdu);
     const float scale = std::cbrt(std::fabs(m.determinant()));
     s.uv_per_length = scale > 0.0f ? s.uv_per_length / scale : 0.0f;
 }
 
-void mesh_point(const Mesh& mesh, std::uint32_t face, const Hit& hit, SurfaceNeeds needs, SurfacePoint& s) {
+void mesh_point(const Mesh& mesh, std::uint32_t face, const Hit& hit, bool colors,
+                SurfacePoint& s) {
     const Corners k = corners_of(mesh, face, hit.u, hit.v);
-    const std::uint32_t ia = mesh.position_index[k.a], ib = mesh.position_index[k.b], ic = mesh.position_index[k.c];
+    const std::uint32_t ia = mesh.position_index[k.a], ib = mesh.position_index[k.b],
+                        ic = mesh.position_index[k.c];
     const Vec3f a = mesh.positions[ia], b = mesh.positions[ib], c = mesh.positions[ic];
     s.p = a * k.wa + b * k.wb + c * k.wc;
-    // The rounding of the sum (PBRT 4e, eq. 6.24), and that of Embree's plane test, whose products are of
-    // differences between the vertices and the ray's origin: as large as the face, whatever the plane.
-    const float reach = std::sqrt(std::fmax(length2(a - s.p), std::fmax(length2(b - s.p), length2(c - s.p))));
-    s.p_error = (abs(a * k.wa) + abs(b * k.wb) + abs(c * k.wc)) * gamma_bound(7) + Vec3f(reach * gamma_bound(3));
-    const Vec3f normal = cross(b - a, c - a);
-    const float area2 = length(normal);
-    s.ng = normal / area2;
+    // The rounding of the sum (PBRT 4e, eq. 6.24), and that of Embree's plane test, whose products
+    // are of differences between the vertices and the ray's origin: as large as the face, whatever
+    // the plane.
+    const Vec3f ab = b - a, ac = c - a;
+    const float reach = max_component(abs(ab) + abs(ac));
+    s.p_error = (abs(a * k.wa) + abs(b * k.wb) + abs(c * k.wc)) * gamma_bound(7) +
+                Vec3f(reach * gamma_bound(3));
+    const Vec3f normal = cross(ab, ac);
+    s.ng = normal * (1.0f / std::sqrt(length2(normal)));
     s.ns = s.ng;
     if (!mesh.normals.empty()) {
         const auto& index = mesh.normal_index.empty() ? mesh.position_index : mesh.normal_index;
-        const Vec3f n = mesh.normals[index[k.a]] * k.wa + mesh.normals[index[k.b]] * k.wb + mesh.normals[index[k.c]] * k.wc;
+        const Vec3f n = mesh.normals[index[k.a]] * k.wa + mesh.normals[index[k.b]] * k.wb +
+                        mesh.normals[index[k.c]] * k.wc;
         const float l2 = length2(n);
         if (l2 > 1e-12f) s.ns = n / std::sqrt(l2);
     }
-    if (needs.uv && !mesh.uvs.empty()) {
-        const auto& index = mesh.uv_index.empty() ? mesh.position_index : mesh.uv_index;
-        const Vec2f ta = mesh.uvs[index[k.a]], tb = mesh.uvs[index[k.b]], tc = mesh.uvs[index[k.c]];
-        s.uv = ta * k.wa + tb * k.wb + tc * k.wc;
-        const Vec2f e1 = tb - ta, e2 = tc - ta;
-        const float uv_area2 = e1.x * e2.y - e2.x * e1.y;
-        s.uv_per_length = std::sqrt(std::fabs(uv_area2) / area2);
-        if (uv_area2 != 0.0f) s.dpdu = ((b - a) * e2.y - (c - a) * e1.y) / uv_area2;
-    }
-    if (needs.colors && !mesh.colors.empty()) {
+    if (colors && !mesh.colors.empty()) {
         s.vertex_color = mesh.colors[ia] * k.wa + mesh.colors[ib] * k.wb + mesh.colors[ic] * k.wc;
     }
+}
+
+void mesh_texture_frame(const Mesh& mesh, const Hit& hit, SurfacePoint& s) {
+    if (mesh.uvs.empty()) return;
+    const Corners k = corners_of(mesh, s.face, hit.u, hit.v);
+    const auto& index = mesh.uv_index.empty() ? mesh.position_index : mesh.uv_index;
+    const Vec2f ta = mesh.uvs[index[k.a]], tb = mesh.uvs[index[k.b]], tc = mesh.uvs[index[k.c]];
+    s.uv = ta * k.wa + tb * k.wb + tc * k.wc;
+    const Vec3f a = mesh.positions[mesh.position_index[k.a]];
+    const Vec3f ab = mesh.positions[mesh.position_index[k.b]] - a,
+                ac = mesh.positions[mesh.position_index[k.c]] - a;
+    const Vec2f e1 = tb - ta, e2 = tc - ta;
+    const float uv_area2 = e1.x * e2.y - e2.x * e1.y;
+    s.uv_per_length = std::sqrt(std::fabs(uv_area2) / length(cross(ab, ac)));
+    if (uv_area2 != 0.0f) s.dpdu = (ab * e2.y - ac * e1.y) * (1.0f / uv_area2);
 }
 
 // Embree solves the sphere in float; its t only says which of the two roots was meant.
 void sphere_point(const Sphere& sphere, const Ray& local, float t, SurfacePoint& s) {
     const Vec3d d(local.d), oc = Vec3d(local.o) - Vec3d(sphere.center);
     const double r = sphere.radius, a = length2(d), b = dot(oc, d);
-    const Vec3d closest = oc - d * (b / a);  // nearest point of the line to the centre: no cancellation
+    const Vec3d closest =
+        oc - d * (b / a);  // nearest point of the line to the centre: no cancellation
     const double reach = std::sqrt(std::max(0.0, (r * r - length2(closest)) / a));
     const double middle = -b / a;
     const double root = static_cast<double>(t) < middle ? middle - reach : middle + reach;
@@ -84,7 +105,9 @@ void sphere_point(const Sphere& sphere, const Ray& local, float t, SurfacePoint&
     // Embree's own float solution is good to a few roundings of centre and radius.
     s.p_error = (abs(sphere.center) + Vec3f(sphere.radius)) * gamma_bound(16);
     const double turn = std::atan2(n.x, n.z) / (2.0 * 3.14159265358979323846);
-    s.uv = {static_cast<float>(turn < 0 ? turn + 1 : turn), static_cast<float>(std::acos(std::fmax(-1.0, std::fmin(1.0, -n.y))) / 3.14159265358979323846)};
+    s.uv = {static_cast<float>(turn < 0 ? turn + 1 : turn),
+            static_cast<float>(std::acos(std::max(-1.0, std::min(1.0, -n.y))) /
+                               3.14159265358979323846)};
     s.dpdu = Vec3f(Vec3d{n.z, 0, -n.x} * (2.0 * 3.14159265358979323846 * r));
     s.uv_per_length = 1.0f / (kPi * sphere.radius);
 }
@@ -97,7 +120,8 @@ void disc_point(const Disc& disc, const Ray& local, SurfacePoint& s) {
     s.p_error = abs(disc.center) * gamma_bound(8) + Vec3f(disc.radius * gamma_bound(8));
     const Frame frame(disc.normal);
     const Vec3f q = Vec3f(p - Vec3d(disc.center));
-    s.uv = {0.5f + 0.5f * dot(q, frame.s) / disc.radius, 0.5f + 0.5f * dot(q, frame.t) / disc.radius};
+    s.uv = {0.5f + 0.5f * dot(q, frame.s) / disc.radius,
+            0.5f + 0.5f * dot(q, frame.t) / disc.radius};
     s.dpdu = frame.s * (2.0f * disc.radius);
     s.uv_per_length = 0.5f / disc.radius;
 }
@@ -110,8 +134,8 @@ Ray to_local(const Affinef& m, const Ray& ray) {
 
 }  // namespace
 
-SurfacePoint surface_point(const Geometry& geometry, const HitTarget& target, const Hit& hit, const Ray& ray,
-                           SurfaceNeeds needs) noexcept {
+SurfacePoint surface_point(const Geometry& geometry, const HitTarget& target, const Hit& hit,
+                           const Ray& ray, bool colors) noexcept {
     SurfacePoint s;
     const Placement& placed = geometry.placements[target.placement];
     s.placement = target.placement;
@@ -120,7 +144,7 @@ SurfacePoint surface_point(const Geometry& geometry, const HitTarget& target, co
         const Mesh& mesh = geometry.meshes[placed.shape];
         s.face = mesh.parts[target.part].first_face + hit.prim;
         s.material = mesh.materials[mesh.material_slot(s.face)];
-        mesh_point(mesh, s.face, hit, needs, s);
+        mesh_point(mesh, s.face, hit, colors, s);
     } else {
         const Ray local = placed.instanced ? to_local(placed.to_world, ray) : ray;
         if (placed.kind == PlacedKind::sphere) {
@@ -135,6 +159,38 @@ SurfacePoint surface_point(const Geometry& geometry, const HitTarget& target, co
     if (placed.instanced) to_world(placed, s);
     if (dot(s.ns, s.ng) < 0.0f) s.ns = -s.ns;
     return s;
+}
+
+void prefetch_indices(const Geometry& geometry, const HitTarget& target, const Hit& hit) noexcept {
+    const Placement& placed = geometry.placements[target.placement];
+    if (placed.kind != PlacedKind::mesh) return;
+    const Mesh& mesh = geometry.meshes[placed.shape];
+    const std::uint32_t face = mesh.parts[target.part].first_face + hit.prim;
+    const std::size_t corner = mesh.corner(face);
+    __builtin_prefetch(&mesh.position_index[corner]);
+    if (!mesh.normal_index.empty()) __builtin_prefetch(&mesh.normal_index[corner]);
+    if (!mesh.face_material.empty()) __builtin_prefetch(&mesh.face_material[face]);
+}
+
+void prefetch_vertices(const Geometry& geometry, const HitTarget& target, const Hit& hit) noexcept {
+    const Placement& placed = geometry.placements[target.placement];
+    if (placed.kind != PlacedKind::mesh) return;
+    const Mesh& mesh = geometry.meshes[placed.shape];
+    const std::size_t corner = mesh.corner(mesh.parts[target.part].first_face + hit.prim);
+    const bool normals = !mesh.normals.empty();
+    const std::uint32_t* normal_index =
+        mesh.normal_index.empty() ? mesh.position_index.data() : mesh.normal_index.data();
+    for (std::size_t k = corner; k < corner + 3; ++k) {
+        __builtin_prefetch(&mesh.positions[mesh.position_index[k]]);
+        if (normals) __builtin_prefetch(&mesh.normals[normal_index[k]]);
+    }
+}
+
+void add_texture_frame(const Geometry& geometry, const Hit& hit, SurfacePoint& s) noexcept {
+    const Placement& placed = geometry.placements[s.placement];
+    // Spheres and discs have filled theirs in on the way.
+    if (placed.kind == PlacedKind::mesh) mesh_texture_frame(geometry.meshes[placed.shape], hit, s);
+    if (placed.instanced) texture_frame_to_world(placed.to_world, s);
 }
 
 Vec2f surface_uv(const Mesh& mesh, std::uint32_t face, float u, float v) noexcept {

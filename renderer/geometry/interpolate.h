@@ -1,6 +1,6 @@
 #pragma once
-// From a hit's ids to the surface point, in full float accuracy: positions come from the vertices and the
-// barycentrics (or, on spheres and discs, from the equation in double), never from o + t d.
+// From a hit's ids to the surface point, in full float accuracy: positions come from the vertices
+// and the barycentrics (or, on spheres and discs, from the equation in double), never from o + t d.
 
 #include "renderer/core/ray.h"
 #include "renderer/core/surface_point.h"
@@ -9,14 +9,18 @@
 
 namespace tessera {
 
-/// What of a SurfacePoint to fill in beyond position and normals.
-struct SurfaceNeeds {
-    bool uv = true;      // uv, dpdu, uv_per_length
-    bool colors = true;  // vertex colours
-};
+/// Position, normals, ids; vertex colours if asked for. No texture coordinates yet.
+SurfacePoint surface_point(const Geometry& geometry, const HitTarget& target, const Hit& hit,
+                           const Ray& ray, bool colors) noexcept;
 
-SurfacePoint surface_point(const Geometry& geometry, const HitTarget& target, const Hit& hit, const Ray& ray,
-                           SurfaceNeeds needs) noexcept;
+/// Asks the cache for what surface_point will read of a mesh: first the indices, later, when those
+/// have come, the vertices. A block's lanes wait for memory together rather than one after the
+/// other.
+void prefetch_indices(const Geometry& geometry, const HitTarget& target, const Hit& hit) noexcept;
+void prefetch_vertices(const Geometry& geometry, const HitTarget& target, const Hit& hit) noexcept;
+
+/// Adds uv, dpdu and uv_per_length, for materials that read them.
+void add_texture_frame(const Geometry& geometry, const Hit& hit, SurfacePoint& s) noexcept;
 
 /// Texture coordinates alone, for the opacity test.
 Vec2f surface_uv(const Mesh& mesh, std::uint32_t face, float u, float v) noexcept;

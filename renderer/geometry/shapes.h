@@ -1,6 +1,6 @@
 #pragma once
-// Shapes ready to trace: what Embree and the interpolation share. Positions are floats about the scene's (or, for
-// instanced shapes, the shape's) own origin.
+// Shapes ready to trace: what Embree and the interpolation share. Positions are floats about the
+// scene's (or, for instanced shapes, the shape's) own origin.
 
 #include <cstdint>
 #include <vector>
@@ -22,8 +22,9 @@ struct Mesh {
     std::vector<Vec3f> positions;  // one more than used: Embree reads 16 bytes at the last vertex
     std::vector<Vec3f> normals;
     std::vector<Vec2f> uvs;
-    std::vector<Color> colors;     // per position
-    std::vector<std::uint32_t> position_index, normal_index, uv_index;  // 3 per triangle, then 4 per quad
+    std::vector<Color> colors;  // per position
+    std::vector<std::uint32_t> position_index, normal_index,
+        uv_index;                              // 3 per triangle, then 4 per quad
     std::vector<std::uint16_t> face_material;  // slot; empty: slot 0
     std::vector<std::uint32_t> face_object;    // empty: 0
     std::vector<std::int32_t> materials;       // slot -> scene material
@@ -33,7 +34,8 @@ struct Mesh {
     std::uint32_t faces() const noexcept { return triangles + quads; }
     /// First entry of a face in the index arrays.
     std::size_t corner(std::uint32_t face) const noexcept {
-        return face < triangles ? std::size_t(face) * 3 : std::size_t(triangles) * 3 + std::size_t(face - triangles) * 4;
+        return face < triangles ? std::size_t(face) * 3
+                                : std::size_t(triangles) * 3 + std::size_t(face - triangles) * 4;
     }
     std::uint32_t material_slot(std::uint32_t face) const noexcept {
         return face_material.empty() ? 0 : face_material[face];
@@ -56,17 +58,17 @@ struct Disc {
 
 enum class PlacedKind : std::uint8_t { mesh, sphere, disc };
 
-/// A shape put into the scene. Placed directly (to_world is the identity and the shape's coordinates are the
-/// scene's) or through an Embree instance.
+/// A shape put into the scene. Placed directly (to_world is the identity and the shape's
+/// coordinates are the scene's) or through an Embree instance.
 struct Placement {
     Affinef to_world;
-    std::uint32_t shape = 0;         // index among the shapes of its kind
-    std::int32_t material = -1;      // replaces the shape's materials
-    std::int32_t light = -1;         // the light that this shape is the body of
+    std::uint32_t shape = 0;     // index among the shapes of its kind
+    std::int32_t material = -1;  // replaces the shape's materials
+    std::int32_t light = -1;     // the light that this shape is the body of
     PlacedKind kind = PlacedKind::mesh;
     bool instanced = false;
     bool camera_visible = true;
-    float condition = 1;             // of to_world: how much a rounding on the way in grows on the way out
+    float condition = 1;  // of to_world: how much a rounding on the way in grows on the way out
 
     /// Places through an Embree instance.
     void instance_at(const Affined& to_world);

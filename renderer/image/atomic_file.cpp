@@ -18,6 +18,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kNameKept = 200;
+
+std::string follow(const std::string& path) {
+    std::error_code failed;
+    if (!fs::is_symlink(path, failed)) return path;
+    const fs::path real = fs::weakly_canonical(path, failed);
+    return failed ? path : real.string();
+}
+
 std::string errno_text(int code) { return std::generic_category().message(code); }
 
 bool is_dead(int pid) { return ::kill(pid, 0) != 0 && errno == ESRCH; }
@@ -45,8 +54,8 @@ void fail_output(const std::string& path, const std::string& reason) {
     throw Error(ExitCode::output, path + ": cannot write: " + reason);
 }
 
-AtomicFile::AtomicFile(const std::string& target) : target_(target) {
-    const fs::path path(target);
+AtomicFile::AtomicFile(const std::string& target) : target_(target), real_(follow(target)) {
+    const fs::path path(real_);
     const std::string name = path.filename().string();
     if (name.empty() || name == "." || name == "..") fail_output(target, "not a file name");
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -56,10 +65,14 @@ AtomicFile::AtomicFile(const std::string& target) : target_(target) {
     if (::stat(folder_.c_str(), &info) != 0)
         fail_output(target, "folder '" + folder_ + "': " + errno_text(errno));
     if (!S_ISDIR(info.st_mode)) fail_output(target, "'" + folder_ + "' is not a folder");
-    if (::stat(target.c_str(), &info) == 0 && !S_ISREG(info.st_mode))
+    if (::stat(real_.c_str(), &info) != 0) {
+        if (errno != ENOENT) fail_output(target, errno_text(errno));
+    } else if (!S_ISREG(info.st_mode)) {
         fail_output(target, S_ISDIR(info.st_mode) ? "it is a folder" : "it is not a regular file");
+    }
 
-    const std::string prefix = "." + name + ".tmp.";
+    // The longest name that a file system takes leaves no room for the rest of ours.
+    const std::string prefix = "." + name.substr(0, kNameKept) + ".tmp.";
     for (const fs::path& old : leftovers(folder, prefix)) ::unlink(old.c_str());
     temp_ = (folder / (prefix + std::to_string(::getpid()))).string();
     ::unlink(temp_.c_str());  // our pid used by someone before us
@@ -105,7 +118,7 @@ std::uint64_t AtomicFile::finish() {
 }
 
 void AtomicFile::commit() {
-    if (::rename(temp_.c_str(), target_.c_str()) != 0) fail_output(target_, errno_text(errno));
+    if (::rename(temp_.c_str(), real_.c_str()) != 0) fail_output(target_, errno_text(errno));
     temp_.clear();
     // The file is in place; a file system that cannot flush folders (some network ones) is no
     // failure.

@@ -1,6 +1,6 @@
 #pragma once
 // A file that appears whole or not at all: written as `.<name>.tmp.<pid>` beside its target, then
-// renamed.
+// renamed. A link as target stays, what it leads to is replaced.
 
 #include <cstddef>
 #include <cstdint>
@@ -37,6 +37,7 @@ public:
 
 private:
     std::string target_;
+    std::string real_;  // where a link leads; the target otherwise
     std::string folder_;
     std::string temp_;
     int fd_ = -1;

@@ -52,8 +52,8 @@ struct TileCache::Impl {
         bool srgb = false;
     };
     struct Destroy {
-        void operator()(OIIO::TextureSystem* system) const {
-            OIIO::TextureSystem::destroy(system, true);
+        void operator()(OIIO::TextureSystem* owned) const {
+            OIIO::TextureSystem::destroy(owned, true);
         }
     };
     std::unique_ptr<OIIO::TextureSystem, Destroy> system{OIIO::TextureSystem::create(false)};

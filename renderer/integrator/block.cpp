@@ -20,7 +20,8 @@ void Counters::add(const Counters& o) noexcept {
     rays.shadow += o.rays.shadow;
     samples += o.samples;
     for (int i = 0; i < kInvalidCauses; ++i) invalid[i] += o.invalid[i];
-    if (o.first.set && (!first.set || std::tuple(o.first.sample, o.first.y, o.first.x) < std::tuple(first.sample, first.y, first.x))) {
+    if (o.first.set && (!first.set || std::tuple(o.first.sample, o.first.y, o.first.x) <
+                                          std::tuple(first.sample, first.y, first.x))) {
         first = o.first;
     }
 }
@@ -35,7 +36,8 @@ LaneMask lanes_inside(const PixelWindow& w, int x, int y) noexcept {
 }
 
 void seed_block(BlockJob& job, std::uint64_t seed) noexcept {
-    for (int lane = 0; lane < kLanes; ++lane) job.seeds[lane] = pixel_seed(lane_x(job, lane), lane_y(job, lane), seed);
+    for (int lane = 0; lane < kLanes; ++lane)
+        job.seeds[lane] = pixel_seed(lane_x(job, lane), lane_y(job, lane), seed);
 }
 
 }  // namespace tessera

@@ -1,6 +1,6 @@
 #pragma once
-// The unit of work: an aligned 4x4 block of pixels at one sample index, absolute in the frame. Its bits depend on
-// nothing else: not on tile, crop or thread.
+// The unit of work: an aligned 4x4 block of pixels at one sample index, absolute in the frame. Its
+// bits depend on nothing else: not on tile, crop or thread.
 
 #include <array>
 #include <cstdint>
@@ -36,12 +36,12 @@ struct Counters {
 struct BlockJob {
     const Scene* scene = nullptr;
     const FilterSampler* filter = nullptr;
-    bool layers = false;       // passes beyond beauty are wanted
-    int x = 0, y = 0;          // top left pixel, multiples of 4
+    bool layers = false;  // passes beyond beauty are wanted
+    int x = 0, y = 0;     // top left pixel, multiples of 4
     LaneMask lanes = kAllLanes;
-    std::uint32_t index = 0;   // of the sample
+    std::uint32_t index = 0;        // of the sample
     std::uint32_t seeds[kLanes]{};  // of the pixels
-    RayLog* log = nullptr;     // takes down every ray, for the benchmark
+    RayLog* log = nullptr;          // takes down every ray, for the benchmark
 };
 
 using BlockSamples = std::array<PathSample, kLanes>;

@@ -3,6 +3,8 @@
 
 namespace tessera {
 
-void path_basic(const BlockJob& job, BlockSamples& out, Counters& counters) noexcept { trace_path<kBasic>(job, out, counters); }
+void path_basic(const BlockJob& job, BlockSamples& out, Counters& counters) noexcept {
+    trace_path<kBasic>(job, out, counters);
+}
 
 }  // namespace tessera

@@ -3,6 +3,8 @@
 
 namespace tessera {
 
-void path_full(const BlockJob& job, BlockSamples& out, Counters& counters) noexcept { trace_path<kFull>(job, out, counters); }
+void path_full(const BlockJob& job, BlockSamples& out, Counters& counters) noexcept {
+    trace_path<kFull>(job, out, counters);
+}
 
 }  // namespace tessera

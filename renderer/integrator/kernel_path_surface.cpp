@@ -3,6 +3,8 @@
 
 namespace tessera {
 
-void path_surface(const BlockJob& job, BlockSamples& out, Counters& counters) noexcept { trace_path<kSurface>(job, out, counters); }
+void path_surface(const BlockJob& job, BlockSamples& out, Counters& counters) noexcept {
+    trace_path<kSurface>(job, out, counters);
+}
 
 }  // namespace tessera

@@ -1,8 +1,10 @@
 #pragma once
-// Unidirectional path tracing over a block: next-event estimation, multiple importance sampling by the power
-// heuristic, Russian roulette. Kajiya, "The Rendering Equation", SIGGRAPH 1986; Veach, "Robust Monte Carlo Methods for
-// Light Transport Simulation", 1997, chapter 9. Reads as one path moving forward; each stage handles all lanes.
+// Unidirectional path tracing over a block: next-event estimation, multiple importance sampling by
+// the power heuristic, Russian roulette. Kajiya, "The Rendering Equation", SIGGRAPH 1986; Veach,
+// "Robust Monte Carlo Methods for Light Transport Simulation", 1997, chapter 9. Reads as one path
+// moving forward; each stage handles all lanes.
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -18,7 +20,11 @@ template <Features F>
 class PathBlock {
 public:
     PathBlock(const BlockJob& job, BlockSamples& out, Counters& counters) noexcept
-        : job_(job), scene_(*job.scene), settings_(scene_.settings()), out_(out), counters_(counters) {}
+        : job_(job),
+          scene_(*job.scene),
+          settings_(scene_.settings()),
+          out_(out),
+          counters_(counters) {}
 
     void trace() noexcept {
         start_paths();
@@ -41,19 +47,20 @@ private:
     struct Lane {
         Ray ray;
         Color throughput{1.0f};
-        Vec3f from;              // vertex that sent the ray: where its pdf was taken
-        float bsdf_pdf = 0;      // of the ray's direction; 0: light sampling could not have made it
+        Vec3f from;          // vertex that sent the ray: where its pdf was taken
+        float bsdf_pdf = 0;  // of the ray's direction; 0: light sampling could not have made it
         float cone_width = 0, cone_spread = 0;
-        float eta_scale = 1;     // undoes radiance scaling for the roulette
+        float eta_scale = 1;  // undoes radiance scaling for the roulette
         std::uint16_t diffuse = 0, glossy = 0, transmission = 0;
-        bool last = false;       // the ray may still find light, nothing more
+        bool last = false;  // the ray may still find light, nothing more
         bool layers_done = false;
         Color layer_throughput{1.0f};
         // Light found at this vertex, waiting for its shadow ray.
         Color pending{0.0f};
     };
 
-    // ---- camera -------------------------------------------------------------------------------------
+    // ---- camera
+    // -------------------------------------------------------------------------------------
     void start_paths() noexcept {
         SamplePairs film, lens;
         sample_pairs(job_.seeds, job_.index, dim::kFilter, film);
@@ -64,7 +71,8 @@ private:
             Lane& lane = lanes_[i];
             lane = Lane{};
             const Vec2f offset = job_.filter->offset(film.at(i));
-            const Vec2f at{static_cast<float>(lane_x(job_, i)) + 0.5f + offset.x, static_cast<float>(lane_y(job_, i)) + 0.5f + offset.y};
+            const Vec2f at{static_cast<float>(lane_x(job_, i)) + 0.5f + offset.x,
+                           static_cast<float>(lane_y(job_, i)) + 0.5f + offset.y};
             const CameraRay ray = scene_.camera().ray(at, F.lens ? lens.at(i) : Vec2f{0.5f, 0.5f});
             lane.ray = ray.ray;
             lane.cone_width = ray.cone_width;
@@ -79,9 +87,10 @@ private:
         counters_.samples += static_cast<std::uint64_t>(std::popcount(job_.lanes));
     }
 
-    // ---- intersect ----------------------------------------------------------------------------------
-    // Packets where lanes run together (the camera's rays), single rays after that: by depth, never by how many
-    // lanes live, so that a lane's bits do not depend on its neighbours.
+    // ---- intersect
+    // ---------------------------------------------------------------------------------- Packets
+    // where lanes run together (the camera's rays), single rays after that: by depth, never by how
+    // many lanes live, so that a lane's bits do not depend on its neighbours.
     void intersect(std::uint32_t depth) noexcept {
         const auto count = static_cast<std::uint64_t>(std::popcount(alive_));
         (depth == 0 ? counters_.rays.camera : counters_.rays.bounce) += count;
@@ -95,19 +104,31 @@ private:
             scene_.accel().intersect(packet_, alive_, seeds_, true);
             for (LaneMask m = alive_; m != 0; m &= m - 1) {
                 const int i = std::countr_zero(m);
-                hits_[i] = packet_.hit(i);
+                arrive(i, packet_.hit(i));
             }
-            return;
+        } else {
+            for (LaneMask m = alive_; m != 0; m &= m - 1) {
+                const int i = std::countr_zero(m);
+                if (job_.log) job_.log->single(lanes_[i].ray, seeds_[i], false);
+                arrive(i, scene_.accel().intersect(lanes_[i].ray, seeds_[i]));
+            }
         }
         for (LaneMask m = alive_; m != 0; m &= m - 1) {
             const int i = std::countr_zero(m);
-            if (job_.log) job_.log->single(lanes_[i].ray, seeds_[i], false);
-            hits_[i] = scene_.accel().intersect(lanes_[i].ray, seeds_[i]);
+            if (hits_[i].valid()) prefetch_vertices(scene_.geometry(), targets_[i], hits_[i]);
         }
     }
 
+    void arrive(int i, const Hit& hit) noexcept {
+        hits_[i] = hit;
+        if (!hit.valid()) return;
+        targets_[i] = scene_.accel().target(hit);
+        prefetch_indices(scene_.geometry(), targets_[i], hit);
+    }
+
     void draw_samples(std::uint32_t depth) noexcept {
-        sample_pairs(job_.seeds, job_.index, dim::vertex(depth, dim::kLight), light_u_);
+        if (scene_.lights().sampled())
+            sample_pairs(job_.seeds, job_.index, dim::vertex(depth, dim::kLight), light_u_);
         sample_pairs(job_.seeds, job_.index, dim::vertex(depth, dim::kChoice), choice_u_);
         sample_pairs(job_.seeds, job_.index, dim::vertex(depth, dim::kBsdf), bsdf_u_);
         if (depth >= static_cast<std::uint32_t>(settings_.min_depth)) {
@@ -115,31 +136,35 @@ private:
         }
     }
 
-    // ---- shade: returns whether the path goes on ----------------------------------------------------
+    // ---- shade: returns whether the path goes on
+    // ----------------------------------------------------
     bool shade(int i, std::uint32_t depth) noexcept {
         Lane& lane = lanes_[i];
         const Vec3f d = lane.ray.d;
         if (!hits_[i].valid()) {
-            out_[i].radiance += lane.throughput * scene_.lights().escaped(d, lane.bsdf_pdf, depth == 0);
+            out_[i].radiance +=
+                lane.throughput * scene_.lights().escaped(d, lane.bsdf_pdf, depth == 0);
             return false;
         }
-        const HitTarget target = scene_.accel().target(hits_[i]);
-        const SurfacePoint s = surface_point(scene_.geometry(), target, hits_[i], lane.ray, {F.textures || F.specular, F.vertex_colors});
+        SurfacePoint s =
+            surface_point(scene_.geometry(), targets_[i], hits_[i], lane.ray, F.vertex_colors);
         if (!is_finite(s.p) || !is_finite(s.ng) || !is_finite(s.ns)) {
             invalid(InvalidCause::hit, i);
             return false;
         }
         lane.cone_width += lane.cone_spread * dot(s.p - lane.ray.o, d);
-        const ShadeInput in = shade_input<F>(s, lane.cone_width, d);
+        const ShaderProgram* program = s.material >= 0 ? &scene_.program(s.material) : nullptr;
+        const ShadeInput in = shade_input<F>(scene_, program, hits_[i], lane.cone_width, d, s);
         if (depth == 0) note_first_hit(i, s);
 
         // Emission, weighed against light sampling having found it.
-        const ShaderProgram* program = s.material >= 0 ? &scene_.program(s.material) : nullptr;
         if (!program || program->facts().emissive) {
-            const Color e = program ? program->emission(in, scene_.textures()) : light_radiance(scene_.lights()[s.light], d, s.ng);
+            const Color e = program ? program->emission(in, scene_.textures())
+                                    : light_radiance(scene_.lights()[s.light], d, s.ng);
             float weight = 1.0f;
             if (lane.bsdf_pdf > 0.0f && s.light >= 0) {
-                weight = mis_power(lane.bsdf_pdf, scene_.lights().pdf(s.light, {lane.from}, d, s.p, s.ng, s.material));
+                weight = mis_power(lane.bsdf_pdf, scene_.lights().pdf(s.light, {lane.from}, d, s.p,
+                                                                      s.ng, s.material));
             }
             out_[i].radiance += lane.throughput * e * weight;
         }
@@ -148,12 +173,15 @@ private:
         const FacingFrame frame = facing_frame<F>(s, *program, in, scene_.textures(), -d);
         const Lobes<F> lobes = make_lobes<F>(*program, in, scene_.textures(), frame);
         if (!lane.layers_done) note_layers(i, lobes, frame);
-        if (lobes.has_extended_part() && scene_.lights().sampled()) sample_lights(i, s, frame, lobes);
+        if (lobes.has_extended_part() && scene_.lights().sampled())
+            sample_lights(i, s, frame, lobes);
         return bounce(i, depth, s, frame, lobes);
     }
 
-    // ---- next-event estimation ----------------------------------------------------------------------
-    void sample_lights(int i, const SurfacePoint& s, const FacingFrame& frame, const Lobes<F>& lobes) noexcept {
+    // ---- next-event estimation
+    // ----------------------------------------------------------------------
+    void sample_lights(int i, const SurfacePoint& s, const FacingFrame& frame,
+                       const Lobes<F>& lobes) noexcept {
         Lane& lane = lanes_[i];
         LightSample light;
         if (!scene_.lights().sample({s.p}, choice_u_.x[i], light_u_.at(i), light)) return;
@@ -183,7 +211,8 @@ private:
         shadow_lanes_ |= 1u << i;
     }
 
-    // ---- occlude: the blocked contributions are dropped, the others added -----------------------------
+    // ---- occlude: the blocked contributions are dropped, the others added
+    // -----------------------------
     void occlude(std::uint32_t depth) noexcept {
         if (shadow_lanes_ == 0) return;
         counters_.rays.shadow += static_cast<std::uint64_t>(std::popcount(shadow_lanes_));
@@ -201,7 +230,8 @@ private:
             for (LaneMask m = shadow_lanes_; m != 0; m &= m - 1) {
                 const int i = std::countr_zero(m);
                 if (job_.log) job_.log->single(shadow_[i], seeds_[i], true);
-                blocked |= static_cast<LaneMask>(scene_.accel().occluded(shadow_[i], seeds_[i])) << i;
+                blocked |= static_cast<LaneMask>(scene_.accel().occluded(shadow_[i], seeds_[i]))
+                           << i;
             }
         }
         for (LaneMask m = shadow_lanes_ & ~blocked; m != 0; m &= m - 1) {
@@ -210,14 +240,17 @@ private:
         }
     }
 
-    // ---- bounce -------------------------------------------------------------------------------------
-    bool bounce(int i, std::uint32_t depth, const SurfacePoint& s, const FacingFrame& frame, const Lobes<F>& lobes) noexcept {
+    // ---- bounce
+    // -------------------------------------------------------------------------------------
+    bool bounce(int i, std::uint32_t depth, const SurfacePoint& s, const FacingFrame& frame,
+                const Lobes<F>& lobes) noexcept {
         Lane& lane = lanes_[i];
         const auto b = lobes.sample(frame.wo, bsdf_u_.at(i), choice_u_.y[i]);
         if (!b) return false;
         const Vec3f wi = frame.shading.to_world(b->wi);
         if (!same_side(wi, b->wi, frame.ng)) return false;
-        // The throughput is kept for the shadow ray's sake in `pending`; from here on it is the next ray's.
+        // The throughput is kept for the shadow ray's sake in `pending`; from here on it is the
+        // next ray's.
         lane.throughput *= b->weight;
         lane.bsdf_pdf = b->pdf;
         lane.eta_scale *= b->eta * b->eta;
@@ -225,13 +258,19 @@ private:
 
         lane.last = depth + 1 > static_cast<std::uint32_t>(settings_.max_depth);
         switch (b->cls) {
-            case LobeClass::diffuse: lane.last |= ++lane.diffuse > settings_.max_diffuse_depth; break;
-            case LobeClass::glossy: lane.last |= ++lane.glossy > settings_.max_glossy_depth; break;
-            case LobeClass::transmission: lane.last |= ++lane.transmission > settings_.max_transmission_depth; break;
+            case LobeClass::diffuse:
+                lane.last |= ++lane.diffuse > settings_.max_diffuse_depth;
+                break;
+            case LobeClass::glossy:
+                lane.last |= ++lane.glossy > settings_.max_glossy_depth;
+                break;
+            case LobeClass::transmission:
+                lane.last |= ++lane.transmission > settings_.max_transmission_depth;
+                break;
         }
         if (lane.last && !scene_.emission_can_be_hit()) return false;
         if (depth >= static_cast<std::uint32_t>(settings_.min_depth)) {
-            const float survive = std::fmin(max_component(lane.throughput) * lane.eta_scale, 1.0f);
+            const float survive = std::min(max_component(lane.throughput) * lane.eta_scale, 1.0f);
             if (survive < 1.0f) {
                 if (roulette_u_.x[i] >= survive) return false;
                 lane.throughput *= 1.0f / survive;
@@ -239,7 +278,7 @@ private:
         }
         lane.from = s.p;
         lane.ray = {offset_origin(s.p, s.p_error, s.ng, wi), wi, kInfinity, kOtherRays};
-        lane.cone_spread = std::fmax(lane.cone_spread, b->spread);
+        lane.cone_spread = std::max(lane.cone_spread, b->spread);
         if (!b->delta) lane.layers_done = true;
         if (!traceable(lane.ray.o, lane.ray.d)) {
             invalid(InvalidCause::bounce_ray, i);
@@ -248,7 +287,8 @@ private:
         return true;
     }
 
-    // ---- passes -------------------------------------------------------------------------------------
+    // ---- passes
+    // -------------------------------------------------------------------------------------
     void note_first_hit(int i, const SurfacePoint& s) noexcept {
         out_[i].alpha = 1.0f;
         if (!job_.layers) return;
@@ -297,6 +337,7 @@ private:
     Lane lanes_[kLanes];
     Ray shadow_[kLanes];
     Hit hits_[kLanes];
+    HitTarget targets_[kLanes];
     SamplePairs light_u_, choice_u_, bsdf_u_, roulette_u_;
     std::uint32_t seeds_[kLanes];
 };

@@ -5,7 +5,8 @@
 
 namespace tessera {
 
-void RayLog::packet(const RayPacket& rays, LaneMask lanes, const std::uint32_t (&seeds)[kLanes], bool shadow, bool coherent) {
+void RayLog::packet(const RayPacket& rays, LaneMask lanes, const std::uint32_t (&seeds)[kLanes],
+                    bool shadow, bool coherent) {
     Packet p{rays, {}, lanes, shadow, coherent};
     std::memcpy(p.seeds, seeds, sizeof seeds);
     packets_.push_back(p);
@@ -27,7 +28,8 @@ std::uint64_t RayLog::replay(const Accel& accel) const {
             const Packet& p = packets_[packet++];
             if (p.shadow) {
                 RayPacket rays = p.rays;
-                hits += static_cast<std::uint64_t>(std::popcount(accel.occluded(rays, p.lanes, p.seeds, p.coherent)));
+                hits += static_cast<std::uint64_t>(
+                    std::popcount(accel.occluded(rays, p.lanes, p.seeds, p.coherent)));
             } else {
                 HitPacket rays;
                 rays.ray = p.rays;
@@ -36,7 +38,8 @@ std::uint64_t RayLog::replay(const Accel& accel) const {
             }
         } else {
             const Single& s = singles_[single++];
-            hits += s.shadow ? accel.occluded(s.ray, s.seed) : accel.intersect(s.ray, s.seed).valid();
+            hits +=
+                s.shadow ? accel.occluded(s.ray, s.seed) : accel.intersect(s.ray, s.seed).valid();
         }
     }
     return hits;

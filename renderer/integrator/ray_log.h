@@ -1,6 +1,6 @@
 #pragma once
-// Every ray of a render, in the order and grouping in which Embree was asked, so that Embree alone can be timed on
-// the very same work.
+// Every ray of a render, in the order and grouping in which Embree was asked, so that Embree alone
+// can be timed on the very same work.
 
 #include <cstdint>
 #include <vector>
@@ -12,7 +12,8 @@ namespace tessera {
 
 class RayLog {
 public:
-    void packet(const RayPacket& rays, LaneMask lanes, const std::uint32_t (&seeds)[kLanes], bool shadow, bool coherent);
+    void packet(const RayPacket& rays, LaneMask lanes, const std::uint32_t (&seeds)[kLanes],
+                bool shadow, bool coherent);
     void single(const Ray& ray, std::uint32_t seed, bool shadow);
     std::uint64_t rays() const noexcept { return rays_; }
     /// Asks again; returns the number of hits, so that nothing is optimised away.

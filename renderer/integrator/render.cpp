@@ -16,14 +16,17 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 FilmLayers layers_of(const FilmDesc& film) {
     FilmLayers layers;
     if (film.aovs.empty()) return {true, true, true, true};
     for (const std::string& name : film.aovs) {
         if (!enable_layer(name, layers)) {
-            throw Error(ExitCode::usage, film.loc, "pass '" + name + "' is unknown (there are: beauty, Z, N, P, albedo)");
+            throw Error(ExitCode::usage, film.loc,
+                        "pass '" + name + "' is unknown (there are: beauty, Z, N, P, albedo)");
         }
     }
     return layers;
@@ -32,18 +35,25 @@ FilmLayers layers_of(const FilmDesc& film) {
 class Renderer {
 public:
     Renderer(const Scene& scene, const RenderSettings& settings)
-        : scene_(scene), settings_(settings), window_(window_of(scene.film())), layers_(layers_of(scene.film())),
-          film_(window_, layers_), filter_(scene.film().filter, scene.film().filter_width_px),
-          kernel_(find_kernel(scene.settings().integrator, scene.kernel())), tiles_(make_tiles(window_, settings.tile)),
+        : scene_(scene),
+          settings_(settings),
+          window_(window_of(scene.film())),
+          layers_(layers_of(scene.film())),
+          film_(window_, layers_),
+          filter_(scene.film().filter, scene.film().filter_width_px),
+          kernel_(find_kernel(scene.settings().integrator, scene.kernel())),
+          tiles_(make_tiles(window_, settings.tile)),
           workers_(settings.threads) {}
 
     RenderResult run() {
         start_ = Clock::now();
         const int spp = scene_.settings().spp;
         int done = 0;
-        // Passes grow fourfold: an early stop leaves an even picture, and the estimate of the end is soon good.
+        // Passes grow fourfold: an early stop leaves an even picture, and the estimate of the end
+        // is soon good.
         for (int pass = 1; done < spp && !stopped_; pass *= 4) {
-            const int count = std::min(settings_.time_s > 0 ? affordable(done, pass) : pass, spp - done);
+            const int count =
+                std::min(settings_.time_s > 0 ? affordable(done, pass) : pass, spp - done);
             if (count == 0) break;
             render_pass(done, done + count, spp);
             if (!stopped_) done += count;
@@ -52,14 +62,18 @@ public:
     }
 
 private:
-    static PixelWindow window_of(const FilmDesc& film) { return film.crop ? *film.crop : PixelWindow{0, 0, film.width, film.height}; }
+    static PixelWindow window_of(const FilmDesc& film) {
+        return film.crop ? *film.crop : PixelWindow{0, 0, film.width, film.height};
+    }
 
     // How many more samples the time allows, judged by those taken.
     int affordable(int done, int wanted) const {
         if (done == 0) return 1;
         const double used = seconds_since(start_), each = used / done;
         const double left = settings_.time_s - used;
-        return left < 0.5 * each ? 0 : std::clamp(static_cast<int>(left / each + 0.5), 1, std::max(1, wanted));
+        return left < 0.5 * each
+                   ? 0
+                   : std::clamp(static_cast<int>(left / each + 0.5), 1, std::max(1, wanted));
     }
 
     void render_pass(int first, int last, int spp) {
@@ -70,7 +84,8 @@ private:
                 return;
             }
             render_tile(tiles_[t], first, last);
-            const double share = static_cast<double>(finished.fetch_add(1) + 1) / static_cast<double>(tiles_.size());
+            const double share =
+                static_cast<double>(finished.fetch_add(1) + 1) / static_cast<double>(tiles_.size());
             report(first + (last - first) * share, spp, last);
         });
     }
@@ -91,7 +106,8 @@ private:
                     job.index = static_cast<std::uint32_t>(index);
                     kernel_(job, samples, counters);
                     for (int lane = 0; lane < kLanes; ++lane) {
-                        if ((job.lanes >> lane) & 1u) film_.add(lane_x(job, lane), lane_y(job, lane), samples[lane]);
+                        if ((job.lanes >> lane) & 1u)
+                            film_.add(lane_x(job, lane), lane_y(job, lane), samples[lane]);
                     }
                 }
             }
@@ -109,7 +125,8 @@ private:
         last_report_ = elapsed;
         Progress p;
         p.fraction = samples / spp;
-        if (settings_.time_s > 0) p.fraction = std::max(p.fraction, std::min(1.0, elapsed / settings_.time_s));
+        if (settings_.time_s > 0)
+            p.fraction = std::max(p.fraction, std::min(1.0, elapsed / settings_.time_s));
         p.elapsed_s = elapsed;
         p.eta_s = p.fraction > 0 ? elapsed * (1 - p.fraction) / p.fraction : 0;
         p.spp = pass_end;
@@ -137,7 +154,8 @@ private:
         s.complete = r.complete;
         if (counters_.first.set) {
             const auto& f = counters_.first;
-            s.first_invalid = std::string(to_string(f.cause)) + " at pixel " + std::to_string(f.x) + "," + std::to_string(f.y) + " sample " + std::to_string(f.sample);
+            s.first_invalid = std::string(to_string(f.cause)) + " at pixel " + std::to_string(f.x) +
+                              "," + std::to_string(f.y) + " sample " + std::to_string(f.sample);
         }
         if (!layers_.any()) s.left_out.push_back({"passes", "only beauty was asked for"});
         return r;
@@ -163,7 +181,8 @@ private:
 
 RenderResult render(const Scene& scene, const RenderSettings& settings) {
     if (settings.tile < kBlockSize || settings.tile % kBlockSize != 0) {
-        throw Error(ExitCode::usage, "tile is " + std::to_string(settings.tile) + ", must be a multiple of 4");
+        throw Error(ExitCode::usage,
+                    "tile is " + std::to_string(settings.tile) + ", must be a multiple of 4");
     }
     return Renderer(scene, settings).run();
 }

@@ -1,5 +1,7 @@
 #include "renderer/integrator/replay.h"
 
+#include <time.h>
+
 #include <algorithm>
 #include <chrono>
 #include <mutex>
@@ -16,6 +18,12 @@ constexpr int kTilesAtOnce = 64;
 
 }  // namespace
 
+double process_cpu_seconds() noexcept {
+    timespec t{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
 ReplayTimes time_replay(const Scene& scene, const RenderSettings& settings) {
     const FilmDesc& film = scene.film();
     const PixelWindow window = film.crop ? *film.crop : PixelWindow{0, 0, film.width, film.height};
@@ -26,7 +34,8 @@ ReplayTimes time_replay(const Scene& scene, const RenderSettings& settings) {
     ReplayTimes times;
     std::atomic<std::uint64_t> hits{0};
     for (std::size_t first = 0; first < tiles.size(); first += kTilesAtOnce) {
-        const int count = static_cast<int>(std::min<std::size_t>(kTilesAtOnce, tiles.size() - first));
+        const int count =
+            static_cast<int>(std::min<std::size_t>(kTilesAtOnce, tiles.size() - first));
         std::vector<RayLog> logs(count);
         workers.for_each(count, [&](int t) {
             const PixelWindow& tile = tiles[first + t];
@@ -48,9 +57,12 @@ ReplayTimes time_replay(const Scene& scene, const RenderSettings& settings) {
                 }
             }
         });
+        const double cpu = process_cpu_seconds();
         const auto start = std::chrono::steady_clock::now();
         workers.for_each(count, [&](int t) { hits += logs[t].replay(scene.accel()); });
-        times.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        times.seconds +=
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        times.cpu_seconds += process_cpu_seconds() - cpu;
         for (const RayLog& log : logs) times.rays += log.rays();
     }
     return times;

@@ -1,6 +1,8 @@
 #pragma once
-// From a surface point to what light can do there: the facing frame and the lobes. Shared by the integrators.
+// From a surface point to what light can do there: the facing frame and the lobes. Shared by the
+// integrators.
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
 
@@ -8,8 +10,8 @@
 
 namespace tessera {
 
-/// A LobeList that holds one Lambertian lobe and is as cheap as that: what kernels without specular lobes use. Every
-/// operation gives LobeList's bits.
+/// A LobeList that holds one Lambertian lobe and is as cheap as that: what kernels without specular
+/// lobes use. Every operation gives LobeList's bits.
 class DiffuseOnly {
 public:
     explicit DiffuseOnly(Color weight) : weight_(weight) {}
@@ -38,8 +40,8 @@ using Lobes = std::conditional_t<F.specular || F.transmission, LobeList, Diffuse
 /// The frame that faces the viewer.
 struct FacingFrame {
     Frame shading;
-    Vec3f ng;      // geometric normal on wo's side
-    Vec3f wo;      // local
+    Vec3f ng;  // geometric normal on wo's side
+    Vec3f wo;  // local
     bool front = true;
 };
 
@@ -52,7 +54,8 @@ inline Vec3f visible_normal(Vec3f ns, Vec3f wo) {
 }
 
 template <Features F>
-FacingFrame facing_frame(const SurfacePoint& s, const ShaderProgram& program, const ShadeInput& in, const TextureStore* textures, Vec3f wo) {
+FacingFrame facing_frame(const SurfacePoint& s, const ShaderProgram& program, const ShadeInput& in,
+                         const TextureStore* textures, Vec3f wo) {
     FacingFrame f;
     f.front = dot(s.ng, wo) >= 0.0f;
     f.ng = f.front ? s.ng : -s.ng;
@@ -77,7 +80,8 @@ FacingFrame facing_frame(const SurfacePoint& s, const ShaderProgram& program, co
 }
 
 template <Features F>
-Lobes<F> make_lobes(const ShaderProgram& program, const ShadeInput& in, const TextureStore* textures, const FacingFrame& f) {
+Lobes<F> make_lobes(const ShaderProgram& program, const ShadeInput& in,
+                    const TextureStore* textures, const FacingFrame& f) {
     const SurfaceParams p = program.surface(in, textures);
     if constexpr (F.specular || F.transmission) {
         return openpbr_lobes(p, f.wo, f.front);
@@ -86,13 +90,20 @@ Lobes<F> make_lobes(const ShaderProgram& program, const ShadeInput& in, const Te
     }
 }
 
+/// What the program reads at s; fills in s's texture frame if it reads one.
 template <Features F>
-ShadeInput shade_input(const SurfacePoint& s, float cone_width, Vec3f d) {
+ShadeInput shade_input(const Scene& scene, const ShaderProgram* program, const Hit& hit,
+                       float cone_width, Vec3f d, SurfacePoint& s) {
     ShadeInput in;
-    if constexpr (F.textures) {
-        in.uv = s.uv;
-        // The cone's footprint, stretched along the surface where it meets it at an angle, but not without end.
-        in.uv_width = cone_width * s.uv_per_length / std::fmax(std::sqrt(std::fabs(dot(s.ng, d))), 0.2f);
+    if constexpr (F.textures || F.specular) {
+        if (program && (program->facts().uv || program->facts().tangent)) {
+            add_texture_frame(scene.geometry(), hit, s);
+            in.uv = s.uv;
+            // The cone's footprint, stretched along the surface where it meets it at an angle, but
+            // not without end.
+            in.uv_width =
+                cone_width * s.uv_per_length / std::max(std::sqrt(std::fabs(dot(s.ng, d))), 0.2f);
+        }
     }
     if constexpr (F.vertex_colors) in.vertex_color = s.vertex_color;
     return in;

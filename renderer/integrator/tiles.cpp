@@ -32,11 +32,15 @@ std::vector<PixelWindow> make_tiles(const PixelWindow& window, int size) {
     for (int ty = ty0; ty < ty1; ++ty) {
         for (int tx = tx0; tx < tx1; ++tx) {
             const PixelWindow t{std::max(tx * size, window.x0), std::max(ty * size, window.y0),
-                                std::min((tx + 1) * size, window.x1), std::min((ty + 1) * size, window.y1)};
-            keyed.push_back({hilbert_index(static_cast<std::uint32_t>(tx - tx0), static_cast<std::uint32_t>(ty - ty0), order), t});
+                                std::min((tx + 1) * size, window.x1),
+                                std::min((ty + 1) * size, window.y1)};
+            keyed.push_back({hilbert_index(static_cast<std::uint32_t>(tx - tx0),
+                                           static_cast<std::uint32_t>(ty - ty0), order),
+                             t});
         }
     }
-    std::sort(keyed.begin(), keyed.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::sort(keyed.begin(), keyed.end(),
+              [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<PixelWindow> tiles;
     for (const auto& [key, tile] : keyed) tiles.push_back(tile);
     return tiles;

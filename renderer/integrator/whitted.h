@@ -1,8 +1,9 @@
 #pragma once
-// The ray tree of 1980: at each hit light straight from every source with its shadow ray, ambient light, and one ray
-// each for mirror and refraction; both children of a glass hit are traced. No diffuse interreflection.
-// Whitted, "An Improved Illumination Model for Shaded Display", CACM 23(6), 1980; children too faint to see are cut as
-// in Hall & Greenberg, "A Testbed for Realistic Image Synthesis", IEEE CG&A 3(8), 1983.
+// The ray tree of 1980: at each hit light straight from every source with its shadow ray, ambient
+// light, and one ray each for mirror and refraction; both children of a glass hit are traced. No
+// diffuse interreflection. Whitted, "An Improved Illumination Model for Shaded Display", CACM
+// 23(6), 1980; children too faint to see are cut as in Hall & Greenberg, "A Testbed for Realistic
+// Image Synthesis", IEEE CG&A 3(8), 1983.
 
 #include <algorithm>
 #include <bit>
@@ -19,7 +20,10 @@ template <Features F>
 class WhittedBlock {
 public:
     WhittedBlock(const BlockJob& job, BlockSamples& out, Counters& counters) noexcept
-        : job_(job), scene_(*job.scene), out_(out), counters_(counters),
+        : job_(job),
+          scene_(*job.scene),
+          out_(out),
+          counters_(counters),
           max_depth_(std::min(scene_.settings().max_depth, kStack - 2)) {}
 
     void trace() noexcept {
@@ -60,8 +64,10 @@ private:
             out_[i] = PathSample{};
             size_[i] = 0;
             const Vec2f offset = job_.filter->offset(film.at(i));
-            const CameraRay c = scene_.camera().ray({static_cast<float>(lane_x(job_, i)) + 0.5f + offset.x,
-                                                     static_cast<float>(lane_y(job_, i)) + 0.5f + offset.y}, lens.at(i));
+            const CameraRay c =
+                scene_.camera().ray({static_cast<float>(lane_x(job_, i)) + 0.5f + offset.x,
+                                     static_cast<float>(lane_y(job_, i)) + 0.5f + offset.y},
+                                    lens.at(i));
             push(i, {c.ray, Color(1.0f), c.cone_width, c.cone_spread, 0}, InvalidCause::camera_ray);
         }
         counters_.samples += static_cast<std::uint64_t>(std::popcount(job_.lanes));
@@ -100,21 +106,27 @@ private:
         Node& node = node_[i];
         const Hit hit = packet_.hit(i);
         if (!hit.valid()) {
-            out_[i].radiance += node.weight * scene_.lights().escaped(node.ray.d, 0.0f, node.depth == 0);
+            out_[i].radiance +=
+                node.weight * scene_.lights().escaped(node.ray.d, 0.0f, node.depth == 0);
             return;
         }
         Vertex& v = vertex_[i];
-        v.s = surface_point(scene_.geometry(), scene_.accel().target(hit), hit, node.ray, {true, F.vertex_colors});
-        if (!is_finite(v.s.p) || !is_finite(v.s.ng) || !is_finite(v.s.ns)) return invalid(InvalidCause::hit, i);
+        v.s = surface_point(scene_.geometry(), scene_.accel().target(hit), hit, node.ray,
+                            F.vertex_colors);
+        if (!is_finite(v.s.p) || !is_finite(v.s.ng) || !is_finite(v.s.ns))
+            return invalid(InvalidCause::hit, i);
         node.cone_width += node.cone_spread * dot(v.s.p - node.ray.o, node.ray.d);
         if (node.depth == 0) note_first_hit(i);
-        const ShadeInput in = shade_input<F>(v.s, node.cone_width, node.ray.d);
         const ShaderProgram* program = v.s.material >= 0 ? &scene_.program(v.s.material) : nullptr;
+        const ShadeInput in =
+            shade_input<F>(scene_, program, hit, node.cone_width, node.ray.d, v.s);
         if (!program) {
-            out_[i].radiance += node.weight * light_radiance(scene_.lights()[v.s.light], node.ray.d, v.s.ng);
+            out_[i].radiance +=
+                node.weight * light_radiance(scene_.lights()[v.s.light], node.ray.d, v.s.ng);
             return;
         }
-        if (program->facts().emissive) out_[i].radiance += node.weight * program->emission(in, scene_.textures());
+        if (program->facts().emissive)
+            out_[i].radiance += node.weight * program->emission(in, scene_.textures());
         v.frame = facing_frame<F>(v.s, *program, in, scene_.textures(), -node.ray.d);
         v.lobes = make_lobes<F>(*program, in, scene_.textures(), v.frame);
         if (node.depth == 0) out_[i].albedo = v.lobes.albedo(v.frame.wo);
@@ -129,9 +141,12 @@ private:
     // One light for all lanes: points on it, then the shadow rays.
     void light(int index, std::uint32_t step) noexcept {
         SamplePairs u;
-        sample_pairs(job_.seeds, job_.index, dim::vertex(step, dim::kLight) + 0x10000u * static_cast<std::uint32_t>(index + 1), u);
+        sample_pairs(
+            job_.seeds, job_.index,
+            dim::vertex(step, dim::kLight) + 0x10000u * static_cast<std::uint32_t>(index + 1), u);
         LaneMask waiting = 0;
-        if (std::holds_alternative<EnvironmentLight>(scene_.lights()[index])) return;  // that is the ambient light
+        if (std::holds_alternative<EnvironmentLight>(scene_.lights()[index]))
+            return;  // that is the ambient light
         for (LaneMask m = shade_; m != 0; m &= m - 1) {
             const int i = std::countr_zero(m);
             if (aim(i, scene_.lights()[index], u.at(i))) waiting |= 1u << i;
@@ -158,7 +173,8 @@ private:
             in.uv = light.uv;
             light.radiance = scene_.program(light.material).emission(in, scene_.textures());
         }
-        pending_[i] = node_[i].weight * v.lobes.eval(v.frame.wo, wi).f * light.radiance * (1.0f / light.pdf);
+        pending_[i] =
+            node_[i].weight * v.lobes.eval(v.frame.wo, wi).f * light.radiance * (1.0f / light.pdf);
         if (!(max_component(pending_[i]) > 0.0f)) return false;
         const Vec3f o = offset_origin(v.s.p, v.s.p_error, v.s.ng, light.wi);
         Ray ray{o, light.wi, kInfinity, kOtherRays};
@@ -185,13 +201,15 @@ private:
                 float cos_t = 0;
                 const float f = fresnel_dielectric(v.frame.wo.z, glass->eta, &cos_t);
                 child(i, glass->reflected(v.frame.wo), lobe.weight * f);
-                if (f < 1.0f) child(i, glass->transmitted(v.frame.wo, cos_t), lobe.weight * (1.0f - f));
+                if (f < 1.0f)
+                    child(i, glass->transmitted(v.frame.wo, cos_t), lobe.weight * (1.0f - f));
             } else if (const auto* thin = std::get_if<ThinGlass>(&lobe.model)) {
                 const float r = thin->reflectance(v.frame.wo.z);
                 child(i, *thin->sample(v.frame.wo, {}, -1.0f), lobe.weight * r);
                 child(i, *thin->sample(v.frame.wo, {}, 2.0f), lobe.weight * (1.0f - r));
             } else {
-                const auto s = std::visit([&](const auto& m) { return m.sample(v.frame.wo, Vec2f{}, 0.0f); }, lobe.model);
+                const auto s = std::visit(
+                    [&](const auto& m) { return m.sample(v.frame.wo, Vec2f{}, 0.0f); }, lobe.model);
                 if (s) child(i, *s, lobe.weight);
             }
         }
@@ -203,7 +221,12 @@ private:
         const Vec3f wi = v.frame.shading.to_world(s.wi);
         const Color weight = node.weight * s.weight * share;
         if (!(max_component(weight) > kFaintest) || !same_side(wi, s.wi, v.frame.ng)) return;
-        push(i, {{offset_origin(v.s.p, v.s.p_error, v.s.ng, wi), wi, kInfinity, kOtherRays}, weight, node.cone_width, node.cone_spread, node.depth + 1},
+        push(i,
+             {{offset_origin(v.s.p, v.s.p_error, v.s.ng, wi), wi, kInfinity, kOtherRays},
+              weight,
+              node.cone_width,
+              node.cone_spread,
+              node.depth + 1},
              InvalidCause::bounce_ray);
     }
 

@@ -16,6 +16,7 @@ namespace {
 
 // A line of thousands of words is no list of libraries.
 constexpr std::size_t kMostNames = 64;
+constexpr std::uint64_t kMaxBytes = std::uint64_t{64} << 20;
 
 // The names of a mtllib line, cut at blanks that no '\' stands before.
 std::vector<std::string> split_names(const std::string& text) {
@@ -101,7 +102,7 @@ void MtlLibraries::Impl::load(const AssetPath& found, const std::string& obj_pat
     if (std::filesystem::equivalent(found.path, obj_path, error))
         return obj_tally.add("mtllib names the OBJ itself, ignored", line);
     if (!found.note.empty()) obj_tally.note("mtllib", line, found.note);
-    FileBytes file = read_regular_file(found.path);
+    FileBytes file = read_regular_file(found.path, kMaxBytes);
     if (!file.error.empty())
         return obj_tally.add("mtllib cannot be read:", line, "'" + found.path + "': " + file.error);
     auto name = std::make_shared<const std::string>(found.path);
@@ -144,16 +145,10 @@ int MtlLibraries::Impl::texture(const MtlTexture& texture, Library& library, std
     }
     if (!found.note.empty())
         library.tally.note("texture", line, "'" + texture.file + "' " + found.note);
-    std::error_code error;
-    const std::string as_written = library.folder + "/" + texture.file;
-    if (found.path.empty() && std::filesystem::exists(as_written, error)) {
-        library.tally.add("texture is not a regular file, ignored:", line,
-                          "'" + texture.file + "'");
-        return -1;
-    }
     TextureDesc desc;
-    // A missing one keeps its name, below the library's folder, for the texture store to report.
-    desc.file = found.path.empty() ? as_written : found.path;
+    // A missing one, or one that is no regular file, keeps its name, below the library's folder,
+    // for the texture store to report.
+    desc.file = found.path.empty() ? library.folder + "/" + texture.file : found.path;
     desc.color_space = color_space_of(texture.color_space);
     desc.wrap_u = desc.wrap_v = texture.clamp ? Wrap::clamp : Wrap::repeat;
     desc.scale = texture.scale;

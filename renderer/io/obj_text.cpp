@@ -53,9 +53,20 @@ std::string from_utf16(std::string_view bytes, bool big_endian) {
     return out;
 }
 
+constexpr std::size_t kChunk = std::size_t{16} << 20, kLongestLine = std::size_t{64} << 20;
+
+std::uint64_t machine_memory() {
+    const long pages = ::sysconf(_SC_PHYS_PAGES), page = ::sysconf(_SC_PAGESIZE);
+    return pages > 0 && page > 0
+               ? static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page)
+               : ~std::uint64_t{0};
+}
+
+std::string mib(std::uint64_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }
+
 }  // namespace
 
-FileBytes read_regular_file(const std::string& path) {
+FileBytes read_regular_file(const std::string& path, std::uint64_t max_bytes) {
     // O_NONBLOCK: a FIFO must not hang the open before fstat can refuse it.
     const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (fd < 0) return {{}, std::strerror(errno)};
@@ -65,16 +76,28 @@ FileBytes read_regular_file(const std::string& path) {
     } closer{fd};
     struct stat info {};
     if (::fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) return {{}, "not a regular file"};
-    std::string bytes(static_cast<std::size_t>(info.st_size), '\0');
-    std::size_t filled = 0;
-    while (filled < bytes.size()) {
-        const ssize_t got = ::read(fd, bytes.data() + filled, bytes.size() - filled);
-        if (got < 0 && errno == EINTR) continue;
+    const std::uint64_t limit = std::min(max_bytes, machine_memory() / 2);
+    const auto size = static_cast<std::uint64_t>(info.st_size);
+    if (size > limit)
+        return {{}, "it has " + mib(size) + ", at most " + mib(limit) + " are read here"};
+    std::string bytes;
+    bytes.reserve(size);
+    std::size_t line_start = 0;  // of the line that the last chunk ended in
+    while (bytes.size() < size) {
+        const std::size_t filled = bytes.size();
+        const std::size_t chunk = std::min<std::size_t>(size - filled, kChunk);
+        bytes.resize(filled + chunk);
+        ssize_t got = 0;
+        do got = ::read(fd, bytes.data() + filled, chunk);
+        while (got < 0 && errno == EINTR);
         if (got < 0) return {{}, std::strerror(errno)};
+        bytes.resize(filled + static_cast<std::size_t>(got));
         if (got == 0) break;
-        filled += static_cast<std::size_t>(got);
+        const std::size_t end = bytes.find_last_of("\n\r");
+        if (end != std::string::npos) line_start = end + 1;
+        if (bytes.size() - line_start > kLongestLine)
+            return {{}, "a line of it is longer than " + mib(kLongestLine) + ", which no text has"};
     }
-    bytes.resize(filled);
     return {std::move(bytes), {}};
 }
 

@@ -9,12 +9,14 @@
 
 namespace tessera {
 
-/// The bytes of a regular file, or why it cannot be read.
+/// The bytes of a regular file, or why it cannot be read. A file beyond max_bytes or half of this
+/// machine's memory is refused before it is read: text takes more memory than its size once it is
+/// parsed. So is one with a line beyond 64 MiB, which is no text.
 struct FileBytes {
     std::string bytes;
     std::string error;  // empty: read
 };
-FileBytes read_regular_file(const std::string& path);
+FileBytes read_regular_file(const std::string& path, std::uint64_t max_bytes = ~std::uint64_t{0});
 
 /// Drops a UTF-8 byte order mark and turns UTF-16 with a mark into UTF-8.
 std::string to_utf8(std::string bytes);

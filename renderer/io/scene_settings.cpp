@@ -58,7 +58,8 @@ const KeySet<FilmDesc>& film_part() {
                      {.low = 0, .high = 32, .open_low = true}),
                  word("working_space", &F::working_space, {"lin_rec709", "acescg"},
                       "The linear colour space of every colour in the scene and of the picture."),
-                 key("aovs", &F::aovs, "Layers beside beauty; none named: all; 'beauty' alone: no other."),
+                 key("aovs", &F::aovs,
+                     "Layers beside beauty; none named: all; 'beauty' alone: no other."),
              }}};
         rows.list.keys.back().form.choices = {"beauty", "Z", "N", "P", "albedo"};
         return rows;

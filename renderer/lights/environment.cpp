@@ -7,7 +7,8 @@ namespace tessera {
 namespace {
 
 double luminance_of(Color c) {
-    return 0.2126 * static_cast<double>(c.x) + 0.7152 * static_cast<double>(c.y) + 0.0722 * static_cast<double>(c.z);
+    return 0.2126 * static_cast<double>(c.x) + 0.7152 * static_cast<double>(c.y) +
+           0.0722 * static_cast<double>(c.z);
 }
 
 }  // namespace
@@ -30,11 +31,13 @@ Vec3f EnvironmentLight::to_direction(Vec2f uv) const {
 Color EnvironmentLight::radiance(Vec3f d) const {
     if (width == 0) return scale;
     const Vec2f uv = to_uv(d);
-    const float x = uv.x * static_cast<float>(width) - 0.5f, y = uv.y * static_cast<float>(height) - 0.5f;
+    const float x = uv.x * static_cast<float>(width) - 0.5f,
+                y = uv.y * static_cast<float>(height) - 0.5f;
     const float fx = std::floor(x), fy = std::floor(y), tx = x - fx, ty = y - fy;
     const auto column = [&](int i) { return i < 0 ? i + width : (i >= width ? i - width : i); };
     const int x0 = column(static_cast<int>(fx)), x1 = column(static_cast<int>(fx) + 1);
-    const int y0 = std::clamp(static_cast<int>(fy), 0, height - 1), y1 = std::clamp(static_cast<int>(fy) + 1, 0, height - 1);
+    const int y0 = std::clamp(static_cast<int>(fy), 0, height - 1),
+              y1 = std::clamp(static_cast<int>(fy) + 1, 0, height - 1);
     const Color* r0 = &texels[std::size_t(y0) * width];
     const Color* r1 = &texels[std::size_t(y1) * width];
     return lerp(lerp(r0[x0], r0[x1], tx), lerp(r1[x0], r1[x1], tx), ty) * scale;
@@ -54,8 +57,8 @@ EnvironmentLight make_constant_environment(Color radiance, bool camera_visible) 
     return e;
 }
 
-EnvironmentLight make_environment(int width, int height, std::vector<Color> texels, Color scale, double rotate_deg,
-                                  bool camera_visible) {
+EnvironmentLight make_environment(int width, int height, std::vector<Color> texels, Color scale,
+                                  double rotate_deg, bool camera_visible) {
     EnvironmentLight e;
     e.width = width;
     e.height = height;
@@ -65,17 +68,20 @@ EnvironmentLight make_environment(int width, int height, std::vector<Color> texe
     const double a = rotate_deg * 3.14159265358979323846 / 180.0;
     e.cos_rotate = static_cast<float>(std::cos(a));
     e.sin_rotate = static_cast<float>(std::sin(a));
-    // The mean over a texel of the bilinear look-up: weights 1/8, 6/8, 1/8 each way, times the texel's solid angle.
+    // The mean over a texel of the bilinear look-up: weights 1/8, 6/8, 1/8 each way, times the
+    // texel's solid angle.
     std::vector<double> weights(std::size_t(width) * height);
     const auto at = [&](int x, int y) {
-        return luminance_of(e.texels[std::size_t(std::clamp(y, 0, height - 1)) * width + (x + width) % width]);
+        return luminance_of(
+            e.texels[std::size_t(std::clamp(y, 0, height - 1)) * width + (x + width) % width]);
     };
     for (int y = 0; y < height; ++y) {
         const double sine = std::sin((y + 0.5) / height * 3.14159265358979323846);
         for (int x = 0; x < width; ++x) {
             double sum = 0;
             for (int dy = -1; dy <= 1; ++dy) {
-                for (int dx = -1; dx <= 1; ++dx) sum += at(x + dx, y + dy) * (dx ? 0.125 : 0.75) * (dy ? 0.125 : 0.75);
+                for (int dx = -1; dx <= 1; ++dx)
+                    sum += at(x + dx, y + dy) * (dx ? 0.125 : 0.75) * (dy ? 0.125 : 0.75);
             }
             weights[std::size_t(y) * width + x] = sum * sine;
         }

@@ -70,11 +70,12 @@ bool sample(const DistantLight& l, const LightReference&, Vec2f u, LightSample& 
 }
 
 bool sample(const QuadLight& l, const LightReference& ref, Vec2f u, LightSample& s) {
-    s.p_error = abs(l.corner) * gamma_bound(7) + Vec3f((length(l.edge_u) + length(l.edge_v)) * gamma_bound(7));
+    s.p_error = abs(l.corner) * gamma_bound(7) + Vec3f((l.length_u + l.length_v) * gamma_bound(7));
     s.radiance = l.radiance;
     if (!l.two_sided && dot(ref.p - l.corner, l.normal) <= 0.0f) return false;
     if (rectangle_by_solid_angle(l, ref.p)) {
-        const SphericalRectangle r(l.corner, l.edge_u, l.edge_v, ref.p);
+        const SphericalRectangle r(l.corner, l.axis_u, l.axis_v, l.normal, l.length_u, l.length_v,
+                                   ref.p);
         if (r.solid_angle > kMinSolidAngle) {
             s.p = r.sample(u);
             s.n = l.normal;
@@ -108,7 +109,8 @@ bool sample(const SphereLight& l, const LightReference& ref, Vec2f u, LightSampl
     const float one_minus_cos = cone_of(l, ref.p);
     if (one_minus_cos == 0.0f) {  // inside, or nearly touching: by area
         const Vec3f n = warp_sphere(u);
-        return from_area(ref.p, l.center + n * l.radius, n, 1.0f / (4.0f * kPi * l.radius * l.radius), s);
+        return from_area(ref.p, l.center + n * l.radius, n,
+                         1.0f / (4.0f * kPi * l.radius * l.radius), s);
     }
     const Vec3f axis = l.center - ref.p;
     const float d = length(axis);
@@ -130,7 +132,8 @@ bool sample(const MeshLight& l, const LightReference& ref, Vec2f u, LightSample&
     s.material = t.material;
     s.uv = t.ta + t.tab * b.x + t.tac * b.y;
     s.p_error = abs(t.a) * gamma_bound(9) + Vec3f((length(t.ab) + length(t.ac)) * gamma_bound(7));
-    return from_area(ref.p, t.a + t.ab * b.x + t.ac * b.y, normalize(cross(t.ab, t.ac)), l.density_of(t.material), s);
+    return from_area(ref.p, t.a + t.ab * b.x + t.ac * b.y, normalize(cross(t.ab, t.ac)),
+                     l.density_of(t.material), s);
 }
 
 bool sample(const EnvironmentLight& l, const LightReference&, Vec2f u, LightSample& s) {
@@ -152,6 +155,27 @@ bool sample(const EnvironmentLight& l, const LightReference&, Vec2f u, LightSamp
 
 }  // namespace
 
+QuadLight make_quad_light(Vec3d corner, Vec3d edge_u, Vec3d edge_v, Color radiance,
+                          bool two_sided) {
+    QuadLight q;
+    const Vec3d n = cross(edge_u, edge_v);
+    const double area = length(n), lu = length(edge_u), lv = length(edge_v);
+    q.corner = Vec3f(corner);
+    q.edge_u = Vec3f(edge_u);
+    q.edge_v = Vec3f(edge_v);
+    q.area = static_cast<float>(area);
+    q.radiance = radiance;
+    q.two_sided = two_sided;
+    if (!(area > 0)) return q;
+    q.normal = Vec3f(n / area);
+    q.axis_u = Vec3f(edge_u / lu);
+    q.axis_v = Vec3f(edge_v / lv);
+    q.length_u = static_cast<float>(lu);
+    q.length_v = static_cast<float>(lv);
+    q.rectangle = std::abs(dot(edge_u, edge_v)) < 1e-6 * lu * lv;
+    return q;
+}
+
 float SpotLight::falloff(float cos) const {
     if (cos <= cos_outer) return 0.0f;
     if (cos >= cos_inner) return 1.0f;
@@ -166,7 +190,8 @@ float MeshLight::density_of(std::int32_t material) const {
     return 0.0f;
 }
 
-bool sample_light(const Light& light, const LightReference& ref, Vec2f u, LightSample& out) noexcept {
+bool sample_light(const Light& light, const LightReference& ref, Vec2f u,
+                  LightSample& out) noexcept {
     return std::visit([&](const auto& l) { return sample(l, ref, u, out); }, light);
 }
 
@@ -174,7 +199,8 @@ float light_pdf(const Light& light, const LightReference& ref, Vec3f wi, Vec3f p
                 std::int32_t material) noexcept {
     if (const auto* l = std::get_if<QuadLight>(&light)) {
         if (rectangle_by_solid_angle(*l, ref.p)) {
-            const SphericalRectangle r(l->corner, l->edge_u, l->edge_v, ref.p);
+            const SphericalRectangle r(l->corner, l->axis_u, l->axis_v, l->normal, l->length_u,
+                                       l->length_v, ref.p);
             if (r.solid_angle > kMinSolidAngle) return 1.0f / r.solid_angle;
         }
         return distance2_over_cos(ref.p, p, n, wi) / l->area;
@@ -195,8 +221,10 @@ float light_pdf(const Light& light, const LightReference& ref, Vec3f wi, Vec3f p
 
 Color light_radiance(const Light& light, Vec3f wi, Vec3f n) noexcept {
     const bool front = dot(wi, n) < 0.0f;
-    if (const auto* l = std::get_if<QuadLight>(&light)) return front || l->two_sided ? l->radiance : Color(0.0f);
-    if (const auto* l = std::get_if<DiscLight>(&light)) return front || l->two_sided ? l->radiance : Color(0.0f);
+    if (const auto* l = std::get_if<QuadLight>(&light))
+        return front || l->two_sided ? l->radiance : Color(0.0f);
+    if (const auto* l = std::get_if<DiscLight>(&light))
+        return front || l->two_sided ? l->radiance : Color(0.0f);
     if (const auto* l = std::get_if<SphereLight>(&light)) return l->radiance;
     return Color(0.0f);
 }

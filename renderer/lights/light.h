@@ -1,5 +1,6 @@
 #pragma once
-// Emitters as values. Positions are in the scene's own space, radiance in W/m^2/sr in the working space.
+// Emitters as values. Positions are in the scene's own space, radiance in W/m^2/sr in the working
+// space.
 
 #include <cstdint>
 #include <memory>
@@ -15,13 +16,14 @@ namespace tessera {
 
 /// A direction toward a light from some point, with what is needed to test that nothing is between.
 struct LightSample {
-    Vec3f wi;                // unit
-    Color radiance;          // arriving along wi if nothing is between; for delta lights the irradiance a surface
-                             // facing wi would get
-    float pdf = 0;           // per solid angle, the choice of the light included; for delta lights that choice alone
+    Vec3f wi;        // unit
+    Color radiance;  // arriving along wi if nothing is between; for delta lights the irradiance a
+                     // surface facing wi would get
+    float pdf =
+        0;  // per solid angle, the choice of the light included; for delta lights that choice alone
     bool delta = false;
-    bool infinite = false;   // no point: the light is at infinity
-    Vec3f p, p_error, n;     // point on the light, its error bound, its normal (zero for points)
+    bool infinite = false;  // no point: the light is at infinity
+    Vec3f p, p_error, n;    // point on the light, its error bound, its normal (zero for points)
     std::int32_t material = -1;  // >= 0: radiance comes from this material's emission at uv
     Vec2f uv;
 };
@@ -44,18 +46,20 @@ struct SpotLight {
 };
 
 struct DistantLight {
-    Vec3f to_light;             // unit
+    Vec3f to_light;  // unit
     Color irradiance;
-    float one_minus_cos = 0;    // of the half angle; 0: a delta light
+    float one_minus_cos = 0;  // of the half angle; 0: a delta light
     Color radiance{0.0f};
     bool camera_visible = true;
 };
 
 struct QuadLight {
     Vec3f corner, edge_u, edge_v, normal;
+    Vec3f axis_u, axis_v;  // unit
+    float length_u = 0, length_v = 0;
     Color radiance;
     float area = 0;
-    bool rectangle = false;     // right angles: sampled by solid angle
+    bool rectangle = false;  // right angles: sampled by solid angle
     bool two_sided = false;
 };
 
@@ -87,8 +91,8 @@ struct MeshLight {
 
 /// A lat-long map or a constant all around.
 struct EnvironmentLight {
-    int width = 0, height = 0;         // 0: constant
-    std::vector<Color> texels;         // row 0 is up (+y)
+    int width = 0, height = 0;  // 0: constant
+    std::vector<Color> texels;  // row 0 is up (+y)
     Color scale{1.0f};
     float cos_rotate = 1, sin_rotate = 0;
     Distribution2D table;
@@ -100,14 +104,15 @@ struct EnvironmentLight {
     Vec3f to_direction(Vec2f uv) const;
 };
 
-using Light = std::variant<PointLight, SpotLight, DistantLight, QuadLight, DiscLight, SphereLight, MeshLight,
-                           EnvironmentLight>;
+using Light = std::variant<PointLight, SpotLight, DistantLight, QuadLight, DiscLight, SphereLight,
+                           MeshLight, EnvironmentLight>;
 
 /// pdf without the choice of the light; nothing when the light cannot be seen from there.
-bool sample_light(const Light& light, const LightReference& ref, Vec2f u, LightSample& out) noexcept;
+bool sample_light(const Light& light, const LightReference& ref, Vec2f u,
+                  LightSample& out) noexcept;
 
-/// pdf per solid angle with which sample_light makes the direction wi from ref to the point p with normal n on a
-/// light that a ray has hit (area lights). material: of the face, for mesh lights.
+/// pdf per solid angle with which sample_light makes the direction wi from ref to the point p with
+/// normal n on a light that a ray has hit (area lights). material: of the face, for mesh lights.
 float light_pdf(const Light& light, const LightReference& ref, Vec3f wi, Vec3f p, Vec3f n,
                 std::int32_t material) noexcept;
 
@@ -117,9 +122,12 @@ Color light_radiance(const Light& light, Vec3f wi, Vec3f n) noexcept;
 /// Solid angle of a rectangle, precise for > kMinSolidAngle; below that the caller samples by area.
 inline constexpr float kMinSolidAngle = 0.05f;
 
+/// edge_u and edge_v span the quad; it emits along edge_u x edge_v. Area 0: the quad is degenerate.
+QuadLight make_quad_light(Vec3d corner, Vec3d edge_u, Vec3d edge_v, Color radiance, bool two_sided);
+
 EnvironmentLight make_constant_environment(Color radiance, bool camera_visible);
 /// texels: width x height RGB from the top. Sanitised by the caller.
-EnvironmentLight make_environment(int width, int height, std::vector<Color> texels, Color scale, double rotate_deg,
-                                  bool camera_visible);
+EnvironmentLight make_environment(int width, int height, std::vector<Color> texels, Color scale,
+                                  double rotate_deg, bool camera_visible);
 
 }  // namespace tessera

@@ -10,9 +10,12 @@ namespace {
 
 constexpr double kPiD = 3.14159265358979323846;
 
-double mean_of(Color c) { return (static_cast<double>(c.x) + static_cast<double>(c.y) + static_cast<double>(c.z)) / 3.0; }
+double mean_of(Color c) {
+    return (static_cast<double>(c.x) + static_cast<double>(c.y) + static_cast<double>(c.z)) / 3.0;
+}
 
-// A light is asked at least this share of the time that equal chances would give it: power says nothing of distance.
+// A light is asked at least this share of the time that equal chances would give it: power says
+// nothing of distance.
 constexpr double kFloor = 0.1;
 
 struct Seen {
@@ -40,7 +43,8 @@ Color mean_radiance(const EnvironmentLight& e) {
     double weight = 0;
     for (int y = 0; y < e.height; ++y) {
         const double sine = std::sin((y + 0.5) / e.height * kPiD);
-        for (int x = 0; x < e.width; ++x) sum += Vec3d(e.texels[std::size_t(y) * e.width + x]) * sine;
+        for (int x = 0; x < e.width; ++x)
+            sum += Vec3d(e.texels[std::size_t(y) * e.width + x]) * sine;
         weight += sine * e.width;
     }
     return Vec3f(sum / weight) * e.scale;
@@ -48,27 +52,33 @@ Color mean_radiance(const EnvironmentLight& e) {
 
 }  // namespace
 
-LightSet::LightSet(std::vector<Light> lights, const std::vector<double>& powers) : lights_(std::move(lights)) {
+LightSet::LightSet(std::vector<Light> lights, const std::vector<double>& powers)
+    : lights_(std::move(lights)) {
     double sum = 0;
     int alive = 0;
     for (double p : powers) sum += p, alive += p > 0;
     std::vector<double> weights;
-    for (double p : powers) weights.push_back(p > 0 ? (1 - kFloor) * p / sum + kFloor / alive : 0.0);
+    for (double p : powers)
+        weights.push_back(p > 0 ? (1 - kFloor) * p / sum + kFloor / alive : 0.0);
     choice_ = AliasTable(weights);
     sampled_ = alive;
     for (int i = 0; i < size(); ++i) {
         const auto* distant = std::get_if<DistantLight>(&lights_[i]);
-        if (std::holds_alternative<EnvironmentLight>(lights_[i]) || (distant && distant->one_minus_cos > 0.0f)) {
+        if (std::holds_alternative<EnvironmentLight>(lights_[i]) ||
+            (distant && distant->one_minus_cos > 0.0f)) {
             infinite_.push_back(i);
         }
-        const bool delta = std::holds_alternative<PointLight>(lights_[i]) || std::holds_alternative<SpotLight>(lights_[i]) ||
+        const bool delta = std::holds_alternative<PointLight>(lights_[i]) ||
+                           std::holds_alternative<SpotLight>(lights_[i]) ||
                            (distant && distant->one_minus_cos == 0.0f);
         hittable_ |= !delta;
-        if (const auto* e = std::get_if<EnvironmentLight>(&lights_[i])) ambient_ += mean_radiance(*e);
+        if (const auto* e = std::get_if<EnvironmentLight>(&lights_[i]))
+            ambient_ += mean_radiance(*e);
     }
 }
 
-bool LightSet::sample(const LightReference& ref, float u_choice, Vec2f u, LightSample& out) const noexcept {
+bool LightSet::sample(const LightReference& ref, float u_choice, Vec2f u,
+                      LightSample& out) const noexcept {
     const AliasTable::Pick pick = choice_.sample(u_choice);
     if (!(pick.probability > 0.0f) || !sample_light(lights_[pick.index], ref, u, out)) return false;
     out.pdf *= pick.probability;
@@ -85,7 +95,8 @@ Color LightSet::escaped(Vec3f d, float bsdf_pdf, bool camera) const noexcept {
     Color sum(0.0f);
     for (int i : infinite_) {
         const Seen seen = seen_along(lights_[i], d, camera);
-        const float weight = bsdf_pdf > 0.0f ? mis_power(bsdf_pdf, probability(i) * seen.pdf) : 1.0f;
+        const float weight =
+            bsdf_pdf > 0.0f ? mis_power(bsdf_pdf, probability(i) * seen.pdf) : 1.0f;
         sum += seen.radiance * weight;
     }
     return sum;
@@ -94,7 +105,8 @@ Color LightSet::escaped(Vec3f d, float bsdf_pdf, bool camera) const noexcept {
 std::size_t LightSet::bytes() const noexcept {
     std::size_t sum = lights_.capacity() * sizeof(Light) + choice_.bytes();
     for (const Light& light : lights_) {
-        if (const auto* e = std::get_if<EnvironmentLight>(&light)) sum += e->texels.capacity() * sizeof(Color) + e->table.bytes();
+        if (const auto* e = std::get_if<EnvironmentLight>(&light))
+            sum += e->texels.capacity() * sizeof(Color) + e->table.bytes();
         if (const auto* m = std::get_if<MeshLight>(&light)) {
             sum += m->triangles.capacity() * sizeof(MeshLight::Triangle) + m->pick.bytes();
         }
@@ -108,7 +120,8 @@ double light_power(const Light& light, double scene_radius, double mesh_emission
         double disc, mesh_emission;
         double operator()(const PointLight& l) const { return 4 * kPiD * mean_of(l.intensity); }
         double operator()(const SpotLight& l) const {
-            return 2 * kPiD * (1 - 0.5 * static_cast<double>(l.cos_inner + l.cos_outer)) * mean_of(l.intensity);
+            return 2 * kPiD * (1 - 0.5 * static_cast<double>(l.cos_inner + l.cos_outer)) *
+                   mean_of(l.intensity);
         }
         double operator()(const DistantLight& l) const { return mean_of(l.irradiance) * disc; }
         double operator()(const QuadLight& l) const {

@@ -23,12 +23,15 @@ public:
     const Light& operator[](int i) const noexcept { return lights_[i]; }
 
     /// Chooses a light by u_choice and samples it; out.pdf includes the choice.
-    bool sample(const LightReference& ref, float u_choice, Vec2f u, LightSample& out) const noexcept;
+    bool sample(const LightReference& ref, float u_choice, Vec2f u,
+                LightSample& out) const noexcept;
     /// Density of sample() for a point of light `index` that a ray from ref has hit.
-    float pdf(int index, const LightReference& ref, Vec3f wi, Vec3f p, Vec3f n, std::int32_t material) const noexcept;
+    float pdf(int index, const LightReference& ref, Vec3f wi, Vec3f p, Vec3f n,
+              std::int32_t material) const noexcept;
 
-    /// Light from infinity along d, for a ray that hit nothing. bsdf_pdf: density that made the ray, 0 if light
-    /// sampling could not have made it (camera, delta): the result is weighted by the power heuristic.
+    /// Light from infinity along d, for a ray that hit nothing. bsdf_pdf: density that made the
+    /// ray, 0 if light sampling could not have made it (camera, delta): the result is weighted by
+    /// the power heuristic.
     Color escaped(Vec3f d, float bsdf_pdf, bool camera) const noexcept;
     /// Unweighted, for the ray tree.
     Color background(Vec3f d) const noexcept { return escaped(d, 0.0f, true); }

@@ -6,11 +6,9 @@
 
 namespace tessera {
 
-SphericalRectangle::SphericalRectangle(Vec3f corner, Vec3f edge_u, Vec3f edge_v, Vec3f o_) : o(o_) {
-    const float lx = length(edge_u), ly = length(edge_v);
-    x = edge_u / lx;
-    y = edge_v / ly;
-    z = cross(x, y);
+SphericalRectangle::SphericalRectangle(Vec3f corner, Vec3f x_, Vec3f y_, Vec3f z_, float lx,
+                                       float ly, Vec3f o_)
+    : o(o_), x(x_), y(y_), z(z_) {
     const Vec3f d = corner - o;
     z0 = dot(d, z);
     if (z0 > 0.0f) {
@@ -18,10 +16,12 @@ SphericalRectangle::SphericalRectangle(Vec3f corner, Vec3f edge_u, Vec3f edge_v,
         z0 = -z0;
     }
     x0 = dot(d, x), y0 = dot(d, y), x1 = x0 + lx, y1 = y0 + ly;
-    // Normals of the four planes through o and an edge: only their z and one more component are not zero.
+    // Normals of the four planes through o and an edge: only their z and one more component are not
+    // zero.
     const float n0 = -y0 / std::sqrt(z0 * z0 + y0 * y0), n1 = x1 / std::sqrt(z0 * z0 + x1 * x1);
     const float n2 = y1 / std::sqrt(z0 * z0 + y1 * y1), n3 = -x0 / std::sqrt(z0 * z0 + x0 * x0);
-    const float g0 = acos_poly(-n0 * n1), g1 = acos_poly(-n1 * n2), g2 = acos_poly(-n2 * n3), g3 = acos_poly(-n3 * n0);
+    const float g0 = acos_poly(-n0 * n1), g1 = acos_poly(-n1 * n2), g2 = acos_poly(-n2 * n3),
+                g3 = acos_poly(-n3 * n0);
     b0 = n0;
     b1 = n2;
     k = 2.0f * kPi - g2 - g3;
@@ -32,8 +32,9 @@ Vec3f SphericalRectangle::sample(Vec2f u) const {
     const float au = u.x * solid_angle + k;
     const SinCos a = sincos_turn(std::clamp(au * (0.5f * kInvPi), 0.0f, 1.0f));
     const float fu = (a.cos * b0 - b1) / a.sin;
-    const float cu = std::clamp(std::copysign(1.0f / std::sqrt(fu * fu + b0 * b0), fu), -1.0f, 1.0f);
-    const float xu = std::clamp(-(cu * z0) / std::fmax(safe_sqrt(1.0f - cu * cu), 1e-7f), x0, x1);
+    const float cu =
+        std::clamp(std::copysign(1.0f / std::sqrt(fu * fu + b0 * b0), fu), -1.0f, 1.0f);
+    const float xu = std::clamp(-(cu * z0) / std::max(safe_sqrt(1.0f - cu * cu), 1e-7f), x0, x1);
     const float d2 = xu * xu + z0 * z0;
     const float h0 = y0 / std::sqrt(d2 + y0 * y0), h1 = y1 / std::sqrt(d2 + y1 * y1);
     const float hv = h0 + u.y * (h1 - h0), hv2 = hv * hv;

@@ -12,8 +12,10 @@ struct SphericalRectangle {
     float b0, b1, k;
     float solid_angle;
 
-    /// corner, perpendicular edges; o: the point that looks.
-    SphericalRectangle(Vec3f corner, Vec3f edge_u, Vec3f edge_v, Vec3f o);
+    /// corner, unit axes and lengths of two perpendicular edges, z = x cross y; o: the point that
+    /// looks.
+    SphericalRectangle(Vec3f corner, Vec3f x, Vec3f y, Vec3f z, float length_x, float length_y,
+                       Vec3f o);
     /// A point on the rectangle.
     Vec3f sample(Vec2f u) const;
 };

@@ -17,12 +17,13 @@ struct BakeNeeds {
 };
 
 struct BakeReport {
-    std::size_t degenerate = 0;   // faces whose area is zero in float
+    std::size_t degenerate = 0;                       // faces whose area is zero in float
     std::size_t dropped_uvs = 0, dropped_colors = 0;  // bytes not kept because nothing reads them
 };
 
-/// positions' = float(place.point(position)); place carries the transform and the new origin. A mirrored place turns
-/// the winding, so that normals stay outside.
-Mesh bake_mesh(const MeshDesc& desc, const Affined& place, const BakeNeeds& needs, BakeReport& report);
+/// positions' = float(place.point(position)); place carries the transform and the new origin. A
+/// mirrored place turns the winding, so that normals stay outside.
+Mesh bake_mesh(const MeshDesc& desc, const Affined& place, const BakeNeeds& needs,
+               BakeReport& report);
 
 }  // namespace tessera

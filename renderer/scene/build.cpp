@@ -1,4 +1,5 @@
-// Describe -> build: plain data to the immutable scene. One step a function, in the order in which they run.
+// Describe -> build: plain data to the immutable scene. One step a function, in the order in which
+// they run.
 
 #include "renderer/scene/scene.h"
 
@@ -22,7 +23,10 @@ namespace tessera {
 class SceneBuilder {
 public:
     SceneBuilder(SceneDesc&& desc, const BuildOptions& options)
-        : desc_(std::move(desc)), options_(options), problems_(options.strict), scene_(std::make_shared<Scene>()) {}
+        : desc_(std::move(desc)),
+          options_(options),
+          problems_(options.strict),
+          scene_(std::make_shared<Scene>()) {}
 
     ScenePtr build() {
         scene_->hash_ = scene_hash(desc_);
@@ -46,14 +50,17 @@ public:
 private:
     void find_used_materials() {
         used_.assign(desc_.materials.size(), false);
-        const auto use = [&](int m) { if (m >= 0) used_[m] = true; };
+        const auto use = [&](int m) {
+            if (m >= 0) used_[m] = true;
+        };
         for (const FlatInstance& i : instances_) {
             if (i.material >= 0) {
                 use(i.material);
             } else if (i.kind == ShapeKind::mesh) {
                 for (int m : desc_.meshes[i.index].materials) use(m);
             } else {
-                use(i.kind == ShapeKind::sphere ? desc_.spheres[i.index].material : desc_.discs[i.index].material);
+                use(i.kind == ShapeKind::sphere ? desc_.spheres[i.index].material
+                                                : desc_.discs[i.index].material);
             }
         }
     }
@@ -78,14 +85,17 @@ private:
         }
         if (!requests.empty()) {
             colors();
-            scene_->textures_ = std::make_unique<TextureStore>(requests, *scene_->colors_, problems_);
+            scene_->textures_ =
+                std::make_unique<TextureStore>(requests, *scene_->colors_, problems_);
         }
         textures_left_out_ = n - requests.size();
-        for (const MaterialDesc& m : desc_.materials) scene_->programs_.emplace_back(remapped(m, remap));
+        for (const MaterialDesc& m : desc_.materials)
+            scene_->programs_.emplace_back(remapped(m, remap));
     }
 
     const ColorSpaces& colors() {
-        if (!scene_->colors_) scene_->colors_ = std::make_unique<ColorSpaces>(desc_.film.working_space);
+        if (!scene_->colors_)
+            scene_->colors_ = std::make_unique<ColorSpaces>(desc_.film.working_space);
         return *scene_->colors_;
     }
 
@@ -100,20 +110,27 @@ private:
         for (const FlatInstance& i : instances_) world.add(instance_bounds(desc_, i));
         for (const LightDesc& l : desc_.lights) world.add(light_bounds(l));
         if (world.empty()) {
-            if (desc_.environment || !desc_.lights.empty()) world.add({{-1, -1, -1}, {1, 1, 1}});
-            else world.add({{0, 0, 0}, {0, 0, 0}});
+            if (desc_.environment || !desc_.lights.empty())
+                world.add({{-1, -1, -1}, {1, 1, 1}});
+            else
+                world.add({{0, 0, 0}, {0, 0, 0}});
         }
         constexpr double kFar = 8;  // diagonals away
         const Vec3d center = (world.lo + world.hi) * 0.5;
         scene_->origin_ = length(center) > kFar * length(world.hi - world.lo) ? center : Vec3d{};
         scene_->bounds_min_ = world.lo - scene_->origin_;
         scene_->bounds_max_ = world.hi - scene_->origin_;
-        const double reach = std::max(max_component(abs(scene_->bounds_min_)), max_component(abs(scene_->bounds_max_)));
-        if (reach > 1e17) problems_.error({}, fmt::format("the scene is {:.3g} units large, at most 1e17 can be traced", reach));
+        const double reach = std::max(max_component(abs(scene_->bounds_min_)),
+                                      max_component(abs(scene_->bounds_max_)));
+        if (reach > 1e17)
+            problems_.error(
+                {},
+                fmt::format("the scene is {:.3g} units large, at most 1e17 can be traced", reach));
         problems_.throw_if_any();
     }
 
-    // A shape placed once is moved into the scene's space; one placed often is kept once and instanced.
+    // A shape placed once is moved into the scene's space; one placed often is kept once and
+    // instanced.
     void place_shapes() {
         std::map<std::pair<ShapeKind, int>, ShapeUse> uses;
         for (const FlatInstance& i : instances_) {
@@ -134,30 +151,42 @@ private:
     void place_shape(const FlatInstance& i, ShapeUse& use, Placement& placed) {
         Geometry& g = scene_->geometry_;
         const Affined to_scene = translation(-scene_->origin_) * i.to_world;
-        placed.kind = i.kind == ShapeKind::mesh ? PlacedKind::mesh : (i.kind == ShapeKind::sphere ? PlacedKind::sphere : PlacedKind::disc);
-        // Spheres and discs keep their form only under similarities; any other map goes through an instance.
+        placed.kind = i.kind == ShapeKind::mesh
+                          ? PlacedKind::mesh
+                          : (i.kind == ShapeKind::sphere ? PlacedKind::sphere : PlacedKind::disc);
+        // Spheres and discs keep their form only under similarities; any other map goes through an
+        // instance.
         placed.instanced = use.count > 1 && i.kind == ShapeKind::mesh;
         if (i.kind != ShapeKind::mesh) placed.instanced = !is_similarity(i.to_world);
         if (i.kind == ShapeKind::mesh) {
             if (use.shape < 0) {
-                const Vec3d own_origin = placed.instanced ? mesh_center(desc_.meshes[i.index]) : Vec3d{};
+                const Vec3d own_origin =
+                    placed.instanced ? mesh_center(desc_.meshes[i.index]) : Vec3d{};
                 use.own_origin = own_origin;
-                use.shape = bake(i.index, placed.instanced ? translation(-own_origin) : to_scene, use);
+                use.shape =
+                    bake(i.index, placed.instanced ? translation(-own_origin) : to_scene, use);
             }
             placed.shape = static_cast<std::uint32_t>(use.shape);
             if (placed.instanced) placed.instance_at(to_scene * translation(use.own_origin));
         } else if (i.kind == ShapeKind::sphere) {
             const SphereDesc& s = desc_.spheres[i.index];
-            g.spheres.push_back(placed.instanced ? Sphere{{0, 0, 0}, static_cast<float>(s.radius), s.material}
-                                                 : Sphere{Vec3f(to_scene.point(Vec3d(s.center))), static_cast<float>(s.radius * length(i.to_world.x)), s.material});
+            g.spheres.push_back(placed.instanced
+                                    ? Sphere{{0, 0, 0}, static_cast<float>(s.radius), s.material}
+                                    : Sphere{Vec3f(to_scene.point(Vec3d(s.center))),
+                                             static_cast<float>(s.radius * length(i.to_world.x)),
+                                             s.material});
             if (placed.instanced) placed.instance_at(to_scene * translation(Vec3d(s.center)));
             if (g.spheres.back().material < 0) g.spheres.back().material = default_material();
             placed.shape = static_cast<std::uint32_t>(g.spheres.size() - 1);
         } else {
             const DiscDesc& d = desc_.discs[i.index];
             const Vec3d n = normalize(Vec3d(d.normal));
-            g.discs.push_back(placed.instanced ? Disc{{0, 0, 0}, Vec3f(n), static_cast<float>(d.radius), d.material}
-                                               : Disc{Vec3f(to_scene.point(Vec3d(d.center))), Vec3f(normalize(to_scene.normal(n))), static_cast<float>(d.radius * length(i.to_world.x)), d.material});
+            g.discs.push_back(
+                placed.instanced
+                    ? Disc{{0, 0, 0}, Vec3f(n), static_cast<float>(d.radius), d.material}
+                    : Disc{Vec3f(to_scene.point(Vec3d(d.center))),
+                           Vec3f(normalize(to_scene.normal(n))),
+                           static_cast<float>(d.radius * length(i.to_world.x)), d.material});
             if (placed.instanced) placed.instance_at(to_scene * translation(Vec3d(d.center)));
             if (g.discs.back().material < 0) g.discs.back().material = default_material();
             placed.shape = static_cast<std::uint32_t>(g.discs.size() - 1);
@@ -166,13 +195,15 @@ private:
 
     int bake(int index, const Affined& place, const ShapeUse& use) {
         MeshDesc& desc = desc_.meshes[index];
-        if (desc.materials.size() > 65536) problems_.error(desc.loc, "mesh '" + desc.name + "': more than 65536 materials");
+        if (desc.materials.size() > 65536)
+            problems_.error(desc.loc, "mesh '" + desc.name + "': more than 65536 materials");
         BakeNeeds needs;
         needs.cutout = [&](int m) { return facts(m).cutout; };
         needs.any_cutout_override = use.cutout_override;
         needs.uvs = needs.colors = false;
         for (std::size_t m = 0; m < scene_->programs_.size(); ++m) {
-            // Any used material may stand on it through an override; finer bookkeeping would save little.
+            // Any used material may stand on it through an override; finer bookkeeping would save
+            // little.
             if (!used_[m]) continue;
             const ProgramFacts& f = scene_->programs_[m].facts();
             needs.uvs |= f.uv || f.tangent;
@@ -193,8 +224,14 @@ private:
     }
 
     void make_lights() {
-        EmitterInput in{desc_, scene_->origin_, scene_->bounds_min_, scene_->bounds_max_, scene_->programs_,
-                        scene_->textures_.get(), nullptr, problems_};
+        EmitterInput in{desc_,
+                        scene_->origin_,
+                        scene_->bounds_min_,
+                        scene_->bounds_max_,
+                        scene_->programs_,
+                        scene_->textures_.get(),
+                        nullptr,
+                        problems_};
         if (desc_.environment && !desc_.environment->file.empty()) in.colors = &colors();
         scene_->lights_ = make_emitters(in, scene_->geometry_);
         scene_->emission_can_be_hit_ = scene_->lights_.hittable();
@@ -206,7 +243,8 @@ private:
     void choose_kernel() {
         Features& f = scene_->features_;
         for (std::size_t i = 0; i < scene_->programs_.size(); ++i) {
-            if (!used_[i] || (static_cast<int>(i) == default_material() && !default_used())) continue;
+            if (!used_[i] || (static_cast<int>(i) == default_material() && !default_used()))
+                continue;
             const ProgramFacts& facts = scene_->programs_[i].facts();
             f.specular |= facts.specular;
             f.transmission |= facts.transmission;
@@ -221,7 +259,10 @@ private:
         for (const KernelRow& row : kKernels) {
             if (!row.features.covers(f)) {
                 if (options_.kernel == row.name) {
-                    throw Error(ExitCode::usage, fmt::format("--kernel {}: the scene needs more than that kernel has", row.name));
+                    throw Error(
+                        ExitCode::usage,
+                        fmt::format("--kernel {}: the scene needs more than that kernel has",
+                                    row.name));
                 }
                 continue;
             }
@@ -230,15 +271,19 @@ private:
                 return;
             }
         }
-        throw Error(ExitCode::usage, fmt::format("--kernel {}: unknown, must be basic, surface or full", options_.kernel));
+        throw Error(
+            ExitCode::usage,
+            fmt::format("--kernel {}: unknown, must be basic, surface or full", options_.kernel));
     }
 
     bool default_used() const {
         const Geometry& g = scene_->geometry_;
         for (const Placement& p : g.placements) {
             if (p.material >= 0) continue;
-            if (p.kind == PlacedKind::sphere && g.spheres[p.shape].material == default_material()) return true;
-            if (p.kind == PlacedKind::disc && g.discs[p.shape].material == default_material()) return true;
+            if (p.kind == PlacedKind::sphere && g.spheres[p.shape].material == default_material())
+                return true;
+            if (p.kind == PlacedKind::disc && g.discs[p.shape].material == default_material())
+                return true;
             if (p.kind != PlacedKind::mesh) continue;
             for (int m : g.meshes[p.shape].materials) {
                 if (m == default_material()) return true;
@@ -253,7 +298,8 @@ private:
         accel.threads = workers.threads();
         accel.isa = options_.isa;
         accel.opacity = {scene_.get(), &opacity_stops};
-        workers.execute([&] { scene_->accel_ = std::make_unique<Accel>(scene_->geometry_, accel); });
+        workers.execute(
+            [&] { scene_->accel_ = std::make_unique<Accel>(scene_->geometry_, accel); });
     }
 
     void account() {
@@ -274,18 +320,25 @@ private:
         }
         for (const Placement& p : g.placements) {
             s.instances += p.instanced;
-            if (p.kind == PlacedKind::mesh) s.triangles_instanced += g.meshes[p.shape].triangles + 2 * std::uint64_t(g.meshes[p.shape].quads);
+            if (p.kind == PlacedKind::mesh)
+                s.triangles_instanced +=
+                    g.meshes[p.shape].triangles + 2 * std::uint64_t(g.meshes[p.shape].quads);
         }
         s.memory_geometry += g.placements.capacity() * sizeof(Placement);
-        s.memory_bvh = static_cast<std::uint64_t>(std::max<std::int64_t>(0, scene_->accel_->bytes()));
-        s.memory_textures = scene_->textures_ ? static_cast<std::uint64_t>(scene_->textures_->memory_bytes()) : 0;
+        s.memory_bvh =
+            static_cast<std::uint64_t>(std::max<std::int64_t>(0, scene_->accel_->bytes()));
+        s.memory_textures =
+            scene_->textures_ ? static_cast<std::uint64_t>(scene_->textures_->memory_bytes()) : 0;
         s.memory_lights = scene_->lights_.bytes();
         s.lights = static_cast<std::uint64_t>(scene_->lights_.size());
         if (bake_report_.degenerate > 0) {
-            problems_.note({}, fmt::format("{} faces have no area in single precision and were dropped", bake_report_.degenerate));
+            problems_.note({},
+                           fmt::format("{} faces have no area in single precision and were dropped",
+                                       bake_report_.degenerate));
         }
         s.warnings = desc_.warnings;
-        s.warnings.insert(s.warnings.end(), problems_.warnings().begin(), problems_.warnings().end());
+        s.warnings.insert(s.warnings.end(), problems_.warnings().begin(),
+                          problems_.warnings().end());
         s.notes = desc_.notes;
         s.notes.insert(s.notes.end(), problems_.notes().begin(), problems_.notes().end());
         list_left_out(s);
@@ -300,19 +353,27 @@ private:
         leave(!f.transmission, "transmission", "no material lets light through");
         leave(!f.textures, "texture look-ups", "no image is read while shading");
         leave(!scene_->textures_, "texture system", "no used material reads an image");
-        leave(textures_left_out_ > 0, "textures", fmt::format("{} of {} images cannot reach the picture", textures_left_out_, desc_.textures.size()));
-        leave(!scene_->colors_ || !scene_->colors_->awake(), "OpenColorIO", "no image needs more than the sRGB curve");
-        leave(!desc_.environment || desc_.environment->file.empty(), "environment table", desc_.environment ? "the environment is constant" : "there is no environment");
-        leave(bake_report_.dropped_uvs > 0, "texture coordinates", fmt::format("nothing reads them ({} bytes)", bake_report_.dropped_uvs));
-        leave(bake_report_.dropped_colors > 0, "vertex colours", fmt::format("nothing reads them ({} bytes)", bake_report_.dropped_colors));
-        leave(!f.instances, "instance transforms", "every shape stands once and was moved into place");
+        leave(textures_left_out_ > 0, "textures",
+              fmt::format("{} of {} images cannot reach the picture", textures_left_out_,
+                          desc_.textures.size()));
+        leave(!scene_->colors_ || !scene_->colors_->awake(), "OpenColorIO",
+              "no image needs more than the sRGB curve");
+        leave(!desc_.environment || desc_.environment->file.empty(), "environment table",
+              desc_.environment ? "the environment is constant" : "there is no environment");
+        leave(bake_report_.dropped_uvs > 0, "texture coordinates",
+              fmt::format("nothing reads them ({} bytes)", bake_report_.dropped_uvs));
+        leave(bake_report_.dropped_colors > 0, "vertex colours",
+              fmt::format("nothing reads them ({} bytes)", bake_report_.dropped_colors));
+        leave(!f.instances, "instance transforms",
+              "every shape stands once and was moved into place");
         leave(!f.lens, "lens", "the aperture is zero");
         bool cutout = false;
         for (const Mesh& m : scene_->geometry_.meshes) {
             for (const MeshPart& p : m.parts) cutout |= p.cutout;
         }
         leave(!cutout, "opacity tests", "every surface is opaque");
-        leave(scene_->lights_.empty() || !scene_->lights_.sampled(), "light sampling", scene_->lights_.empty() ? "there is no light" : "the only light is a constant sky");
+        leave(scene_->lights_.empty() || !scene_->lights_.sampled(), "light sampling",
+              scene_->lights_.empty() ? "there is no light" : "the only light is a constant sky");
         const auto unused = std::count(used_.begin(), used_.end(), false);
         leave(unused > 0, "materials", fmt::format("{} are on no shape", unused));
     }

@@ -18,7 +18,9 @@ struct Placed {
 Placed look_at(Vec3d position, Vec3d target, Vec3d up_hint, const SourceLoc& loc) {
     const Vec3d d = target - position;
     const double distance = length(d);
-    if (!(distance > 0)) throw Error(ExitCode::scene, loc, "camera: position and look_at are the same point, they must differ");
+    if (!(distance > 0))
+        throw Error(ExitCode::scene, loc,
+                    "camera: position and look_at are the same point, they must differ");
     const Vec3d forward = d / distance;
     Vec3d right = cross(forward, up_hint);
     if (!(length(right) > 1e-9 * length(up_hint))) {
@@ -29,7 +31,8 @@ Placed look_at(Vec3d position, Vec3d target, Vec3d up_hint, const SourceLoc& loc
     return {position, right, cross(right, forward), forward, distance};
 }
 
-// A view from the front, a little from the right and above, from which a sphere around the bounds just fits.
+// A view from the front, a little from the right and above, from which a sphere around the bounds
+// just fits.
 Placed frame_bounds(Vec3d lo, Vec3d hi, double half_angle_small, bool orthographic) {
     const Vec3d center = (lo + hi) * 0.5;
     const double radius = std::max(length(hi - lo) * 0.5, 1e-6);
@@ -40,7 +43,8 @@ Placed frame_bounds(Vec3d lo, Vec3d hi, double half_angle_small, bool orthograph
 
 }  // namespace
 
-Camera::Camera(const CameraDesc& desc, int width, int height, Vec3d origin, Vec3d bounds_min, Vec3d bounds_max) {
+Camera::Camera(const CameraDesc& desc, int width, int height, Vec3d origin, Vec3d bounds_min,
+               Vec3d bounds_max) {
     orthographic_ = desc.projection == Projection::orthographic;
     const double aspect = static_cast<double>(width) / height;
     const double tan_asked = std::tan(0.5 * desc.fov_deg * kPiD / 180);
@@ -57,9 +61,11 @@ Camera::Camera(const CameraDesc& desc, int width, int height, Vec3d origin, Vec3
         c = {m.p - origin, normalize(m.x), normalize(m.y), normalize(-m.z), 0};
     } else if (desc.automatic) {
         c = frame_bounds(bounds_min, bounds_max, std::atan(tan_small), orthographic_);
-        if (orthographic_) half_height = 0.5 * length(bounds_max - bounds_min) / std::min(1.0, aspect);
+        if (orthographic_)
+            half_height = 0.5 * length(bounds_max - bounds_min) / std::min(1.0, aspect);
     } else {
-        c = look_at(Vec3d(desc.position) - origin, Vec3d(desc.look_at) - origin, Vec3d(desc.up), desc.loc);
+        c = look_at(Vec3d(desc.position) - origin, Vec3d(desc.look_at) - origin, Vec3d(desc.up),
+                    desc.loc);
     }
     if (!orthographic_) half_height = tan_v;
     position_ = Vec3f(c.position);
@@ -71,7 +77,8 @@ Camera::Camera(const CameraDesc& desc, int width, int height, Vec3d origin, Vec3
     aperture_ = static_cast<float>(desc.aperture_radius);
     const double focus = desc.focus_distance > 0 ? desc.focus_distance : c.to_target;
     if (aperture_ > 0.0f && !(focus > 0)) {
-        throw Error(ExitCode::scene, desc.loc, "camera: aperture_radius needs a focus_distance when the camera is a matrix");
+        throw Error(ExitCode::scene, desc.loc,
+                    "camera: aperture_radius needs a focus_distance when the camera is a matrix");
     }
     focus_ = static_cast<float>(focus > 0 ? focus : 1);
     const double pixel = 2 * half_height / height;
@@ -94,7 +101,8 @@ CameraRay Camera::ray(Vec2f film, Vec2f lens) const noexcept {
     r.ray.d = normalize(through);
     if (aperture_ > 0.0f) {
         const Vec2f d = warp_disc_concentric(lens);
-        const Vec3f shift = normalize(right_) * (d.x * aperture_) + normalize(up_) * (d.y * aperture_);
+        const Vec3f shift =
+            normalize(right_) * (d.x * aperture_) + normalize(up_) * (d.y * aperture_);
         r.ray.o = position_ + shift;
         r.ray.d = normalize(through * focus_ - shift);
         // The circle of confusion is the footprint that textures need.

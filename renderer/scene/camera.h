@@ -15,9 +15,10 @@ struct CameraRay {
 class Camera {
 public:
     Camera() = default;
-    /// origin: where the scene's own space lies in the world. bounds: of the scene, for automatic framing, in the
-    /// scene's space. Throws Error for a camera that cannot be.
-    Camera(const CameraDesc& desc, int width, int height, Vec3d origin, Vec3d bounds_min, Vec3d bounds_max);
+    /// origin: where the scene's own space lies in the world. bounds: of the scene, for automatic
+    /// framing, in the scene's space. Throws Error for a camera that cannot be.
+    Camera(const CameraDesc& desc, int width, int height, Vec3d origin, Vec3d bounds_min,
+           Vec3d bounds_max);
 
     /// film: pixels, y downward, (0, 0) the top left corner. lens: unit square.
     CameraRay ray(Vec2f film, Vec2f lens) const noexcept;
@@ -26,8 +27,9 @@ public:
     Vec3f forward() const noexcept { return forward_; }
 
 private:
-    Vec3f position_, right_, up_, forward_;  // right_ and up_ scaled to half the film at distance 1 (or in units)
-    float to_x_ = 0, to_y_ = 0;              // 2 / resolution
+    Vec3f position_, right_, up_,
+        forward_;  // right_ and up_ scaled to half the film at distance 1 (or in units)
+    float to_x_ = 0, to_y_ = 0;  // 2 / resolution
     float aperture_ = 0, focus_ = 1, spread_ = 0, footprint_ = 0;
     bool orthographic_ = false;
 };

@@ -43,7 +43,9 @@ struct EmitterBuilder {
         std::visit([&](const auto& l) { make(l, desc); }, desc.shape);
     }
 
-    void make(const PointLightDesc& l, const LightDesc&) { add(PointLight{point(l.position), color_of(l.intensity)}); }
+    void make(const PointLightDesc& l, const LightDesc&) {
+        add(PointLight{point(l.position), color_of(l.intensity)});
+    }
 
     void make(const SpotLightDesc& l, const LightDesc&) {
         SpotLight s;
@@ -62,31 +64,28 @@ struct EmitterBuilder {
         d.camera_visible = desc.visible;
         const double half = 0.5 * l.angle_deg * kPiD / 180;
         if (half > 0) {
-            // 1 - cos by the half angle's sine, which keeps its digits; E = L pi sin^2 on a facing surface.
+            // 1 - cos by the half angle's sine, which keeps its digits; E = L pi sin^2 on a facing
+            // surface.
             d.one_minus_cos = static_cast<float>(2 * std::sin(half / 2) * std::sin(half / 2));
-            d.radiance = d.irradiance * static_cast<float>(1 / (kPiD * std::sin(half) * std::sin(half)));
+            d.radiance =
+                d.irradiance * static_cast<float>(1 / (kPiD * std::sin(half) * std::sin(half)));
         }
         add(d);
     }
 
     void make(const QuadLightDesc& l, const LightDesc& desc) {
-        const Vec3d u(l.edges[0]), v(l.edges[1]), n = cross(u, v);
-        const double area = length(n);
-        if (!(area > 0)) {
-            in.problems.error(desc.loc, fmt::format("light '{}': the edges are parallel or zero, the quad has no area", desc.name));
+        const QuadLight q = make_quad_light(Vec3d(l.corner) - in.origin, Vec3d(l.edges[0]),
+                                            Vec3d(l.edges[1]), color_of(l.radiance), l.two_sided);
+        if (!(q.area > 0.0f)) {
+            in.problems.error(
+                desc.loc,
+                fmt::format("light '{}': the edges are parallel or zero, the quad has no area",
+                            desc.name));
             return;
         }
-        QuadLight q;
-        q.corner = point(l.corner);
-        q.edge_u = Vec3f(u);
-        q.edge_v = Vec3f(v);
-        q.normal = Vec3f(n / area);
-        q.area = static_cast<float>(area);
-        q.radiance = color_of(l.radiance);
-        q.rectangle = std::abs(dot(u, v)) < 1e-6 * length(u) * length(v);
-        q.two_sided = l.two_sided;
         Mesh body;
-        body.positions = {q.corner, q.corner + q.edge_u, q.corner + q.edge_u + q.edge_v, q.corner + q.edge_v, {}};
+        body.positions = {
+            q.corner, q.corner + q.edge_u, q.corner + q.edge_u + q.edge_v, q.corner + q.edge_v, {}};
         body.position_index = {0, 1, 2, 3};
         body.quads = 1;
         body.parts = {{0, 1, true, false}};
@@ -97,7 +96,8 @@ struct EmitterBuilder {
     }
 
     void make(const DiscLightDesc& l, const LightDesc& desc) {
-        const DiscLight d{point(l.center), Vec3f(normalize(Vec3d(l.normal))), static_cast<float>(l.radius), color_of(l.radiance), l.two_sided};
+        const DiscLight d{point(l.center), Vec3f(normalize(Vec3d(l.normal))),
+                          static_cast<float>(l.radius), color_of(l.radiance), l.two_sided};
         place_body(PlacedKind::disc, geometry.discs.size(), desc.visible);
         geometry.discs.push_back({d.center, d.normal, d.radius, -1});
         add(d);
@@ -117,7 +117,9 @@ struct EmitterBuilder {
             if (placed.kind == PlacedKind::mesh) {
                 mesh_light(placed);
             } else {
-                const std::int32_t own = placed.kind == PlacedKind::sphere ? geometry.spheres[placed.shape].material : geometry.discs[placed.shape].material;
+                const std::int32_t own = placed.kind == PlacedKind::sphere
+                                             ? geometry.spheres[placed.shape].material
+                                             : geometry.discs[placed.shape].material;
                 quadric_light(placed, placed.material >= 0 ? placed.material : own);
             }
         }
@@ -141,17 +143,24 @@ struct EmitterBuilder {
     void mesh_light(Placement& placed) {
         const Mesh& mesh = geometry.meshes[placed.shape];
         const auto material_of = [&](std::uint32_t face) {
-            return placed.material >= 0 ? placed.material : mesh.materials[mesh.material_slot(face)];
+            return placed.material >= 0 ? placed.material
+                                        : mesh.materials[mesh.material_slot(face)];
         };
-        const auto emits = [&](std::int32_t m) { return m >= 0 && in.programs[m].facts().emissive; };
-        if (placed.material >= 0 ? !emits(placed.material) : std::none_of(mesh.materials.begin(), mesh.materials.end(), emits)) return;
+        const auto emits = [&](std::int32_t m) {
+            return m >= 0 && in.programs[m].facts().emissive;
+        };
+        if (placed.material >= 0
+                ? !emits(placed.material)
+                : std::none_of(mesh.materials.begin(), mesh.materials.end(), emits))
+            return;
         MeshLight light;
         std::vector<double> weights;
         double emission = 0;
         for (std::uint32_t face = 0; face < mesh.faces(); ++face) {
             const std::int32_t m = material_of(face);
             if (!emits(m)) continue;
-            const double brightness = static_cast<double>(luminance(in.programs[m].mean_emission(in.textures)));
+            const double brightness =
+                static_cast<double>(luminance(in.programs[m].mean_emission(in.textures)));
             if (!(brightness > 0)) continue;
             add_face(placed, mesh, face, m, light, [&](double area) {
                 weights.push_back(area * brightness);
@@ -161,7 +170,8 @@ struct EmitterBuilder {
         if (light.triangles.empty()) return;
         for (const auto& t : light.triangles) {
             if (light.density_of(t.material) > 0.0f) continue;
-            const double brightness = static_cast<double>(luminance(in.programs[t.material].mean_emission(in.textures)));
+            const double brightness =
+                static_cast<double>(luminance(in.programs[t.material].mean_emission(in.textures)));
             light.density.push_back({t.material, static_cast<float>(brightness / emission)});
         }
         light.pick = AliasTable(weights);
@@ -170,7 +180,8 @@ struct EmitterBuilder {
     }
 
     template <class Added>
-    void add_face(const Placement& placed, const Mesh& mesh, std::uint32_t face, std::int32_t m, MeshLight& light, Added added) {
+    void add_face(const Placement& placed, const Mesh& mesh, std::uint32_t face, std::int32_t m,
+                  MeshLight& light, Added added) {
         const std::size_t first = mesh.corner(face);
         const bool quad = face >= mesh.triangles;
         constexpr int kQuadHalves[2][3] = {{0, 1, 3}, {2, 3, 1}};
@@ -182,18 +193,23 @@ struct EmitterBuilder {
             for (int c = 0; c < 3; ++c) {
                 const Vec3f q = mesh.positions[mesh.position_index[first + k[c]]];
                 p[c] = placed.instanced ? placed.to_world.point(q) : q;
-                if (!mesh.uvs.empty()) t[c] = mesh.uvs[(mesh.uv_index.empty() ? mesh.position_index : mesh.uv_index)[first + k[c]]];
+                if (!mesh.uvs.empty())
+                    t[c] = mesh.uvs[(mesh.uv_index.empty() ? mesh.position_index
+                                                           : mesh.uv_index)[first + k[c]]];
             }
-            const double area = 0.5 * length(cross(Vec3d(p[1]) - Vec3d(p[0]), Vec3d(p[2]) - Vec3d(p[0])));
+            const double area =
+                0.5 * length(cross(Vec3d(p[1]) - Vec3d(p[0]), Vec3d(p[2]) - Vec3d(p[0])));
             if (!(area > 0)) continue;
-            light.triangles.push_back({p[0], p[1] - p[0], p[2] - p[0], t[0], t[1] - t[0], t[2] - t[0], m});
+            light.triangles.push_back(
+                {p[0], p[1] - p[0], p[2] - p[0], t[0], t[1] - t[0], t[2] - t[0], m});
             added(area);
         }
     }
 
     void environment(const EnvironmentDesc& desc) {
         if (desc.file.empty()) {
-            if (max_component(color_of(desc.radiance)) > 0.0f) add(make_constant_environment(color_of(desc.radiance), desc.visible));
+            if (max_component(color_of(desc.radiance)) > 0.0f)
+                add(make_constant_environment(color_of(desc.radiance), desc.visible));
             return;
         }
         Image image;
@@ -214,12 +230,19 @@ struct EmitterBuilder {
             }
             texels[i] = c;
         }
-        if (bad > 0) in.problems.warn(desc.loc, fmt::format("environment '{}': {} texels are not finite or negative, taken as 0", desc.file, bad));
+        if (bad > 0)
+            in.problems.warn(
+                desc.loc,
+                fmt::format("environment '{}': {} texels are not finite or negative, taken as 0",
+                            desc.file, bad));
         const bool eight_bit = !image_info(desc.file).is_float;
         static_assert(sizeof(Color) == 3 * sizeof(float));
-        in.colors->to_working({&texels[0].x, texels.size() * 3}, desc.color_space.empty() && eight_bit ? "srgb_texture" : desc.color_space);
+        in.colors->to_working(
+            {&texels[0].x, texels.size() * 3},
+            desc.color_space.empty() && eight_bit ? "srgb_texture" : desc.color_space);
         for (Color& c : texels) c = is_finite(c) ? max(c, Color(0.0f)) : Color(0.0f);
-        add(make_environment(image.width, image.height, std::move(texels), color_of(desc.radiance), desc.rotate_deg, desc.visible));
+        add(make_environment(image.width, image.height, std::move(texels), color_of(desc.radiance),
+                             desc.rotate_deg, desc.visible));
     }
 };
 

@@ -1,5 +1,6 @@
 #pragma once
-// Lights of a scene: the described ones, their bodies as geometry, emissive surfaces, the environment.
+// Lights of a scene: the described ones, their bodies as geometry, emissive surfaces, the
+// environment.
 
 #include <span>
 

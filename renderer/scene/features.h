@@ -8,11 +8,11 @@ namespace tessera {
 
 /// A structural type: a value of it is a template argument of the kernels.
 struct Features {
-    bool specular = false;       // lobes other than Lambert's
-    bool transmission = false;   // light passes through surfaces
-    bool textures = false;       // images are read while shading, normal maps included
+    bool specular = false;      // lobes other than Lambert's
+    bool transmission = false;  // light passes through surfaces
+    bool textures = false;      // images are read while shading, normal maps included
     bool vertex_colors = false;
-    bool quadrics = false;       // spheres or discs
+    bool quadrics = false;  // spheres or discs
     bool instances = false;
     bool lens = false;
 
@@ -21,7 +21,8 @@ struct Features {
     constexpr bool covers(const Features& other) const {
         return (specular || !other.specular) && (transmission || !other.transmission) &&
                (textures || !other.textures) && (vertex_colors || !other.vertex_colors) &&
-               (quadrics || !other.quadrics) && (instances || !other.instances) && (lens || !other.lens);
+               (quadrics || !other.quadrics) && (instances || !other.instances) &&
+               (lens || !other.lens);
     }
 };
 
@@ -32,9 +33,16 @@ struct KernelRow {
 
 /// From the smallest up; the last covers everything.
 inline constexpr Features kBasic{};
-inline constexpr Features kSurface{.specular = true, .textures = true, .vertex_colors = true, .quadrics = true, .instances = true};
-inline constexpr Features kFull{.specular = true, .transmission = true, .textures = true, .vertex_colors = true,
-                                .quadrics = true, .instances = true, .lens = true};
-inline constexpr std::array<KernelRow, 3> kKernels{{{"basic", kBasic}, {"surface", kSurface}, {"full", kFull}}};
+inline constexpr Features kSurface{
+    .specular = true, .textures = true, .vertex_colors = true, .quadrics = true, .instances = true};
+inline constexpr Features kFull{.specular = true,
+                                .transmission = true,
+                                .textures = true,
+                                .vertex_colors = true,
+                                .quadrics = true,
+                                .instances = true,
+                                .lens = true};
+inline constexpr std::array<KernelRow, 3> kKernels{
+    {{"basic", kBasic}, {"surface", kSurface}, {"full", kFull}}};
 
 }  // namespace tessera

@@ -15,7 +15,8 @@ struct FlatInstance {
     int material = -1;
 };
 
-/// In file order. Singular and non-finite transforms are left out with a warning; a group inside itself is an error.
+/// In file order. Singular and non-finite transforms are left out with a warning; a group inside
+/// itself is an error.
 std::vector<FlatInstance> flatten(const SceneDesc& desc, Problems& problems);
 
 }  // namespace tessera

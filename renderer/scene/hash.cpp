@@ -16,7 +16,9 @@ public:
     Hasher& operator=(const Hasher&) = delete;
 
     template <class T>
-    void operator()(const T& v) requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) { bytes(&v, sizeof v); }
+    void operator()(const T& v) requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) {
+        bytes(&v, sizeof v);
+    }
     void operator()(const std::string& s) { (*this)(s.size()), bytes(s.data(), s.size()); }
     template <class T, std::size_t N>
     void operator()(const std::array<T, N>& a) {
@@ -37,48 +39,64 @@ public:
         if (o) (*this)(*o);
     }
     template <class... T>
-    void all(const T&... v) { ((*this)(v), ...); }
+    void all(const T&... v) {
+        ((*this)(v), ...);
+    }
 
     void operator()(const ColorInput& c) { all(c.value, c.texture); }
     void operator()(const FloatInput& f) { all(f.value, f.texture, f.channel, f.invert); }
-    void operator()(const TextureDesc& t) { all(t.file, t.color_space, t.wrap_u, t.wrap_v, t.scale, t.offset, t.gain, t.bias); }
+    void operator()(const TextureDesc& t) {
+        all(t.file, t.color_space, t.wrap_u, t.wrap_v, t.scale, t.offset, t.gain, t.bias);
+    }
     void operator()(const MaterialDesc& m) {
-        all(m.name, m.base_weight, m.base_color, m.base_metalness, m.specular_weight, m.specular_color, m.specular_roughness,
-            m.specular_roughness_anisotropy, m.specular_ior, m.transmission_weight, m.transmission_color,
-            m.emission_luminance, m.emission_color, m.geometry_opacity, m.geometry_thin_walled, m.geometry_normal,
-            m.geometry_normal_scale, m.use_vertex_color);
+        all(m.name, m.base_weight, m.base_color, m.base_metalness, m.specular_weight,
+            m.specular_color, m.specular_roughness, m.specular_roughness_anisotropy, m.specular_ior,
+            m.transmission_weight, m.transmission_color, m.emission_luminance, m.emission_color,
+            m.geometry_opacity, m.geometry_thin_walled, m.geometry_normal, m.geometry_normal_scale,
+            m.use_vertex_color);
     }
     void operator()(const MeshDesc& m) {
-        all(m.positions, m.normals, m.uvs, m.colors, m.triangles, m.quads, m.position_index, m.normal_index, m.uv_index,
-            m.face_material, m.materials, m.face_object, m.object_names);
+        all(m.positions, m.normals, m.uvs, m.colors, m.triangles, m.quads, m.position_index,
+            m.normal_index, m.uv_index, m.face_material, m.materials, m.face_object,
+            m.object_names);
     }
     void operator()(const SphereDesc& s) { all(s.center, s.radius, s.material); }
     void operator()(const DiscDesc& d) { all(d.center, d.normal, d.radius, d.material); }
     void operator()(const InstanceDesc& i) { all(i.of.kind, i.of.index, i.transforms, i.material); }
     void operator()(const GroupDesc& g) { all(g.members); }
     void operator()(const PointLightDesc& l) { all(l.position, l.intensity); }
-    void operator()(const SpotLightDesc& l) { all(l.position, l.direction, l.intensity, l.cone_deg, l.blend); }
+    void operator()(const SpotLightDesc& l) {
+        all(l.position, l.direction, l.intensity, l.cone_deg, l.blend);
+    }
     void operator()(const DistantLightDesc& l) { all(l.direction, l.irradiance, l.angle_deg); }
     void operator()(const QuadLightDesc& l) { all(l.corner, l.edges, l.radiance, l.two_sided); }
-    void operator()(const DiscLightDesc& l) { all(l.center, l.normal, l.radius, l.radiance, l.two_sided); }
+    void operator()(const DiscLightDesc& l) {
+        all(l.center, l.normal, l.radius, l.radiance, l.two_sided);
+    }
     void operator()(const SphereLightDesc& l) { all(l.center, l.radius, l.radiance); }
     void operator()(const LightDesc& l) {
         all(l.name, l.visible, l.shape.index());
         std::visit([&](const auto& s) { (*this)(s); }, l.shape);
     }
-    void operator()(const EnvironmentDesc& e) { all(e.file, e.color_space, e.radiance, e.rotate_deg, e.visible); }
-    void operator()(const CameraDesc& c) {
-        all(c.automatic, c.projection, c.position, c.look_at, c.up, c.matrix, c.fov_deg, c.fov_axis, c.ortho_height,
-            c.aperture_radius, c.focus_distance);
+    void operator()(const EnvironmentDesc& e) {
+        all(e.file, e.color_space, e.radiance, e.rotate_deg, e.visible);
     }
-    void operator()(const FilmDesc& f) { all(f.width, f.height, f.filter, f.filter_width_px, f.working_space); }
+    void operator()(const CameraDesc& c) {
+        all(c.automatic, c.projection, c.position, c.look_at, c.up, c.matrix, c.fov_deg, c.fov_axis,
+            c.ortho_height, c.aperture_radius, c.focus_distance);
+    }
+    void operator()(const FilmDesc& f) {
+        all(f.width, f.height, f.filter, f.filter_width_px, f.working_space);
+    }
     void operator()(const RenderDesc& r) {
-        all(r.integrator, r.seed, r.max_depth, r.max_diffuse_depth, r.max_glossy_depth, r.max_transmission_depth, r.min_depth);
+        all(r.integrator, r.seed, r.max_depth, r.max_diffuse_depth, r.max_glossy_depth,
+            r.max_transmission_depth, r.min_depth);
     }
 
     std::string hex() const {
         char text[17];
-        std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(XXH3_64bits_digest(state_)));
+        std::snprintf(text, sizeof text, "%016llx",
+                      static_cast<unsigned long long>(XXH3_64bits_digest(state_)));
         return text;
     }
 
@@ -91,8 +109,8 @@ private:
 
 std::string scene_hash(const SceneDesc& d) {
     Hasher h;
-    h.all(d.camera, d.film, d.render, d.environment, d.textures, d.materials, d.meshes, d.spheres, d.discs, d.groups,
-          d.instances, d.lights);
+    h.all(d.camera, d.film, d.render, d.environment, d.textures, d.materials, d.meshes, d.spheres,
+          d.discs, d.groups, d.instances, d.lights);
     return h.hex();
 }
 

@@ -15,7 +15,8 @@ Bounds around(Vec3d center, double radius) {
 Bounds mesh_bounds(const MeshDesc& mesh) {
     Bounds b;
     for (std::uint32_t i : mesh.position_index) {
-        b.add({mesh.positions[3 * std::size_t(i)], mesh.positions[3 * std::size_t(i) + 1], mesh.positions[3 * std::size_t(i) + 2]});
+        b.add({mesh.positions[3 * std::size_t(i)], mesh.positions[3 * std::size_t(i) + 1],
+               mesh.positions[3 * std::size_t(i) + 2]});
     }
     return b;
 }
@@ -25,15 +26,25 @@ Bounds mesh_bounds(const MeshDesc& mesh) {
 Bounds instance_bounds(const SceneDesc& desc, const FlatInstance& instance) {
     Bounds local;
     switch (instance.kind) {
-        case ShapeKind::mesh: local = mesh_bounds(desc.meshes[instance.index]); break;
-        case ShapeKind::sphere: local = around(Vec3d(desc.spheres[instance.index].center), desc.spheres[instance.index].radius); break;
-        case ShapeKind::disc: local = around(Vec3d(desc.discs[instance.index].center), desc.discs[instance.index].radius); break;
-        case ShapeKind::group: break;
+        case ShapeKind::mesh:
+            local = mesh_bounds(desc.meshes[instance.index]);
+            break;
+        case ShapeKind::sphere:
+            local = around(Vec3d(desc.spheres[instance.index].center),
+                           desc.spheres[instance.index].radius);
+            break;
+        case ShapeKind::disc:
+            local =
+                around(Vec3d(desc.discs[instance.index].center), desc.discs[instance.index].radius);
+            break;
+        case ShapeKind::group:
+            break;
     }
     Bounds world;
     if (local.empty()) return world;
     for (int corner = 0; corner < 8; ++corner) {
-        world.add(instance.to_world.point({corner & 1 ? local.hi.x : local.lo.x, corner & 2 ? local.hi.y : local.lo.y,
+        world.add(instance.to_world.point({corner & 1 ? local.hi.x : local.lo.x,
+                                           corner & 2 ? local.hi.y : local.lo.y,
                                            corner & 4 ? local.hi.z : local.lo.z}));
     }
     return world;
@@ -59,8 +70,9 @@ Vec3d mesh_center(const MeshDesc& mesh) {
 
 bool is_similarity(const Affined& m) {
     const double a = length2(m.x), b = length2(m.y), c = length2(m.z), tolerance = 1e-10 * a;
-    return std::abs(a - b) < tolerance && std::abs(a - c) < tolerance && std::abs(dot(m.x, m.y)) < tolerance &&
-           std::abs(dot(m.x, m.z)) < tolerance && std::abs(dot(m.y, m.z)) < tolerance;
+    return std::abs(a - b) < tolerance && std::abs(a - c) < tolerance &&
+           std::abs(dot(m.x, m.y)) < tolerance && std::abs(dot(m.x, m.z)) < tolerance &&
+           std::abs(dot(m.y, m.z)) < tolerance;
 }
 
 }  // namespace tessera

@@ -162,6 +162,16 @@ class BadModel(BadInput):
         self.write("line.obj", GOOD + "v " + "1" * 500000 + "\n")
         self.assertIn(self.render_run("line.obj").code, (0, SCENE))
 
+    def test_file_of_gigabytes_without_a_line_ends_quickly(self):
+        with open(self.folder / "sparse.obj", "wb") as file:
+            file.truncate(3 << 30)
+        self.refuse("sparse.obj", "sparse.obj")
+        (self.folder / "sparse.obj").rename(self.folder / "sparse.mtl")
+        self.write("model.obj", "mtllib sparse.mtl\n" + GOOD)
+        run = self.render_run("model.obj")
+        self.assertEqual(run.code, 0, run)
+        self.assertRegex(run.err, r"model\.obj:1: .*sparse\.mtl")
+
     def test_awkward_but_good_model_renders(self):
         text = "\ufeffv 0 0 0\r\nv 1 0 0 # comment\r\nv 1 1 0\r\nv 0 1 0\r\nusemtl none at all\r\nf -4 \\\r\n -3 -2 -1"
         self.write("awkward.obj", text.encode())
@@ -200,6 +210,11 @@ class BadAsset(BadInput):
     def test_missing_texture_is_an_error_under_strict(self):
         self.textured("nowhere.png")
         self.refuse("scene.toml", "nowhere.png", "--strict")
+
+    def test_pipe_as_texture_is_magenta_without_waiting_for_a_writer(self):
+        self.textured("pipe.png")
+        os.mkfifo(self.folder / "pipe.png")
+        self.assertIn("pipe.png", self.check_magenta().err)
 
     def test_broken_textures_are_magenta_too(self):
         head = b"\x89PNG\r\n\x1a\n"

@@ -1,5 +1,7 @@
 """Output is whole or not there: failed writes, kill -9, and stopping by a signal."""
 
+import json
+import os
 import resource
 import signal
 import subprocess
@@ -54,6 +56,74 @@ class FailedWrite(TesseraTest):
         before = self.files()
         self.render()
         self.assertEqual(self.files(), before)
+
+
+class Targets(TesseraTest):
+    def setUp(self):
+        super().setUp()
+        self.write_scene()
+
+    def test_link_stays_and_what_it_leads_to_is_replaced(self):
+        self.write("shelf/real.exr", "old")
+        (self.folder / "link.exr").symlink_to("shelf/real.exr")
+        self.render(output="link.exr")
+        self.assertTrue((self.folder / "link.exr").is_symlink())
+        self.assertEqual(Exr(self.folder / "shelf" / "real.exr").size, (48, 32))
+
+    def test_pipe_and_device_are_refused_before_the_render(self):
+        os.mkfifo(self.folder / "pipe.exr")
+        (self.folder / "full.exr").symlink_to("/dev/full")
+        for name in ("pipe.exr", "full.exr"):
+            run = self.expect(OUTPUT, "render", "scene.toml", "-o", name, "--spp", "1000000")
+            self.assertIn(name, run.err)
+
+    def test_longest_name_the_file_system_takes(self):
+        self.render(output="x" * 251 + ".exr")
+        self.expect(OUTPUT, "render", "scene.toml", "-o", "x" * 252 + ".exr")
+
+    def test_two_renders_to_one_file_leave_a_whole_one(self):
+        args = ("render", "scene.toml", "-o", "out.exr", "--res", "128x96", "-q")
+        both = [subprocess.Popen(command(*args), cwd=self.folder) for _ in range(2)]
+        self.assertEqual([p.wait(timeout=20 * SLOWDOWN) for p in both], [0, 0])
+        self.assertEqual(Exr(self.folder / "out.exr").size, (128, 96))
+        self.assertEqual([n for n in self.files() if "tmp" in n], [])
+
+
+class Streams(TesseraTest):
+    def setUp(self):
+        super().setUp()
+        self.write_scene()
+
+    def shell(self, line):
+        args = ["bash", "-c", f'exec "$0" {line}', *command()]
+        done = subprocess.run(args, cwd=self.folder, stdin=subprocess.DEVNULL, capture_output=True, timeout=20 * SLOWDOWN)
+        return done.returncode
+
+    def test_closed_streams_never_get_into_the_picture(self):
+        for closed in (">&-", "2>&-", "<&-", "<&- >&- 2>&-"):
+            with self.subTest(closed=closed):
+                self.assertEqual(self.shell(f"render scene.toml -o out.exr -v {closed}"), 0)
+                self.assertEqual(Exr(self.folder / "out.exr").size, (48, 32))
+                (self.folder / "out.exr").unlink()
+
+    @unittest.skipUnless(os.path.exists("/dev/full"), "no /dev/full here")
+    def test_full_disk_behind_stderr_does_not_stop_a_render(self):
+        self.assertEqual(self.shell("render scene.toml -o out.exr -v 2>/dev/full"), 0)
+
+    @unittest.skipUnless(os.path.exists("/dev/full"), "no /dev/full here")
+    def test_result_that_cannot_be_printed_is_an_output_error(self):
+        for words in ("version", "info scene.toml", "render scene.toml -o out.exr --stats -"):
+            self.assertEqual(self.shell(f"{words} >/dev/full 2>/dev/null"), OUTPUT, words)
+
+    def test_statistics_on_standard_output(self):
+        run = self.expect(0, "render", "scene.toml", "-o", "out.exr", "--stats", "-")
+        self.assertEqual(json.loads(run.out)["spp"], 4)
+
+    def test_small_stack_is_enough(self):
+        def limit():
+            resource.setrlimit(resource.RLIMIT_STACK, (1 << 20, 1 << 20))
+
+        self.expect(0, "render", "scene.toml", "-o", "out.exr", preexec_fn=limit)
 
 
 class Killed(TesseraTest):
@@ -118,6 +188,20 @@ class Stopped(TesseraTest):
 
     def test_ctrl_c_does_the_same(self):
         self.check_partial(signal.SIGINT)
+
+    def test_signal_while_loading_saves_nothing(self):
+        rows = 300
+        vertices = "".join(f"v {x} {y} 0\n" for y in range(rows) for x in range(rows))
+        corners = (y * rows + x + 1 for y in range(rows - 1) for x in range(rows - 1))
+        self.write("big.obj", vertices + "".join(f"f {a} {a + 1} {a + rows + 1} {a + rows}\n" for a in corners))
+        args = command("render", "big.obj", "-o", "out.exr", "--spp", "1000")
+        process = subprocess.Popen(args, cwd=self.folder, stderr=subprocess.PIPE)
+        time.sleep(0.05)
+        process.send_signal(signal.SIGTERM)
+        err = process.communicate(timeout=10 * SLOWDOWN)[1].decode()
+        # Before the program's own first line the system ends it: the same to a shell.
+        self.assertIn(process.returncode, (143, -signal.SIGTERM), err)
+        self.assertFalse((self.folder / "out.exr").exists())
 
 
 if __name__ == "__main__":

@@ -1,4 +1,5 @@
-// The instruments themselves: known tail probabilities, and a chi-square test that says no when it must.
+// The instruments themselves: known tail probabilities, and a chi-square test that says no when it
+// must.
 #include <doctest/doctest.h>
 
 #include "renderer/core/warp.h"
@@ -14,10 +15,14 @@ double p_of(double exponent, double scale) {
     SphereTest test;
     test.charts = {{{0, 0, 1}, true}, {{0, 0, -1}, true}};
     test.seed = 5;
-    return sphere_chi_square(test, [](Random& n) { return std::optional(cosine_direction(n)); },
-                             [&](Vec3d w) {
-                                 return w.z > 0 ? scale * (exponent + 1) / (2 * 3.14159265358979) * std::pow(w.z, exponent) : 0.0;
-                             }).p;
+    return sphere_chi_square(
+               test, [](Random& n) { return std::optional(cosine_direction(n)); },
+               [&](Vec3d w) {
+                   return w.z > 0 ? scale * (exponent + 1) / (2 * 3.14159265358979) *
+                                        std::pow(w.z, exponent)
+                                  : 0.0;
+               })
+        .p;
 }
 
 }  // namespace
@@ -38,14 +43,15 @@ TEST_CASE("statistics: tail probabilities have their tabulated values") {
 
 TEST_CASE("chi-square: accepts the right density and refuses one that is a little wrong") {
     CHECK(p_of(1, 1) > 0.01);
-    CHECK(p_of(1.05, 1) < 1e-4);   // a slightly wrong shape
-    CHECK(p_of(1, 0.97) < 1e-4);   // a factor: what is lacking counts as failed samples
+    CHECK(p_of(1.05, 1) < 1e-4);  // a slightly wrong shape
+    CHECK(p_of(1, 0.97) < 1e-4);  // a factor: what is lacking counts as failed samples
     CHECK(p_of(1, 1.03) < 1e-4);
-    CHECK(p_of(0, 1) < 1e-12);     // no cosine at all
+    CHECK(p_of(0, 1) < 1e-12);  // no cosine at all
 }
 
 TEST_CASE("chi-square: p-values of a right density are spread evenly") {
-    // Forty seeds; the least and the greatest of forty even numbers lie in these bounds with chance 0.999.
+    // Forty seeds; the least and the greatest of forty even numbers lie in these bounds with chance
+    // 0.999.
     double least = 1, most = 0;
     Mean mean;
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {
@@ -54,8 +60,10 @@ TEST_CASE("chi-square: p-values of a right density are spread evenly") {
         test.seed = seed * 977;
         test.samples = 1 << 13;
         test.rings = test.sectors = 6;
-        const double p = sphere_chi_square(test, [](Random& n) { return std::optional(cosine_direction(n)); },
-                                           [](Vec3d w) { return std::max(0.0, w.z / 3.14159265358979); }).p;
+        const double p = sphere_chi_square(
+                             test, [](Random& n) { return std::optional(cosine_direction(n)); },
+                             [](Vec3d w) { return std::max(0.0, w.z / 3.14159265358979); })
+                             .p;
         least = std::min(least, p), most = std::max(most, p);
         mean.add(p);
     }

@@ -39,7 +39,8 @@ double fresnel_double(double cos_i, double eta) {
     const double sin2 = (1 - cos_i * cos_i) / (eta * eta);
     if (sin2 >= 1) return 1;
     const double cos_t = std::sqrt(1 - sin2);
-    const double rs = (cos_i - eta * cos_t) / (cos_i + eta * cos_t), rp = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+    const double rs = (cos_i - eta * cos_t) / (cos_i + eta * cos_t),
+                 rp = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
     return 0.5 * (rs * rs + rp * rp);
 }
 
@@ -53,8 +54,11 @@ TEST_CASE("reflection lobes: both ways have the same value") {
             CAPTURE(roughness);
             CAPTURE(anisotropy);
             const Ggx ggx = openpbr_ggx(roughness, anisotropy);
-            CHECK(worst_asymmetry(RoughReflection<DielectricFresnel>{ggx, {1.5f}, Color(1.0f)}, 2) < 2e-4);
-            CHECK(worst_asymmetry(RoughReflection<MetalFresnel>{ggx, {Color(0.7f), Color(0.9f)}, Color(1.0f)}, 3) < 2e-4);
+            CHECK(worst_asymmetry(RoughReflection<DielectricFresnel>{ggx, {1.5f}, Color(1.0f)}, 2) <
+                  2e-4);
+            CHECK(worst_asymmetry(
+                      RoughReflection<MetalFresnel>{ggx, {Color(0.7f), Color(0.9f)}, Color(1.0f)},
+                      3) < 2e-4);
             CHECK(worst_asymmetry(RoughGlass{ggx, 1.5f}, 4) < 2e-4);
         }
     }
@@ -79,11 +83,13 @@ TEST_CASE("rough glass: both ways through have the same value but for the square
                 if (ab < 1e-5 && ba < 1e-5) continue;
                 // Where next to nothing is let through, 1 - Fresnel is rounding.
                 const Vec3d h = normalize(Vec3d(a) + Vec3d(b) * static_cast<double>(eta));
-                if (fresnel_double(std::fabs(dot(h, Vec3d(a))), static_cast<double>(eta)) > 0.9) continue;
+                if (fresnel_double(std::fabs(dot(h, Vec3d(a))), static_cast<double>(eta)) > 0.9)
+                    continue;
                 worst = std::max(worst, std::fabs(ab - ba) / std::max(ab, ba));
                 ++compared;
             }
-            CHECK(worst < 3e-3);  // rounding of wo + eta wi and of 1 - Fresnel near the critical angle
+            CHECK(worst <
+                  3e-3);  // rounding of wo + eta wi and of 1 - Fresnel near the critical angle
             CHECK(compared > 50);
         }
     }
@@ -98,7 +104,8 @@ TEST_CASE("smooth glass: refracts by Snell's law and loses nothing") {
         const double fresnel = fresnel_double(static_cast<double>(wo.z), static_cast<double>(eta));
         float cos_t = 0;
         const double used = static_cast<double>(fresnel_dielectric(wo.z, eta, &cos_t));
-        // Near the critical angle Fresnel rises like a root: rounding of 1e-7 shows as its square root.
+        // Near the critical angle Fresnel rises like a root: rounding of 1e-7 shows as its square
+        // root.
         REQUIRE(std::fabs(used - fresnel) < 2e-3);
         if (std::fabs(fresnel - 1) > 0.05) REQUIRE(std::fabs(used - fresnel) < 1e-4);
         const auto up = glass.sample(wo, {}, static_cast<float>(0.5 * used));
@@ -112,7 +119,9 @@ TEST_CASE("smooth glass: refracts by Snell's law and loses nothing") {
         REQUIRE(down->wi.z < 0.0f);
         REQUIRE(down->eta == eta);
         // Energy: the weight without radiance's 1/eta^2 is one, and the shares add to one.
-        REQUIRE(std::fabs(static_cast<double>(down->weight.x) * static_cast<double>(eta) * static_cast<double>(eta) - 1) < 1e-6);
+        REQUIRE(std::fabs(static_cast<double>(down->weight.x) * static_cast<double>(eta) *
+                              static_cast<double>(eta) -
+                          1) < 1e-6);
         const Vec3d o(wo), t(down->wi);
         REQUIRE(std::fabs(t.x * static_cast<double>(eta) + o.x) < 1e-6);
         REQUIRE(std::fabs(t.y * static_cast<double>(eta) + o.y) < 1e-6);
@@ -126,7 +135,8 @@ TEST_CASE("smooth lobes: reflected and transmitted shares come as often as they 
         for (const float z : {0.999f, 0.6f, 0.2f}) {
             const Vec3f wo = normalize(Vec3f{safe_sqrt(1 - z * z), 0, z});
             const double f = fresnel_double(static_cast<double>(wo.z), static_cast<double>(eta));
-            const double thin_r = f + (f < 1 ? (1 - f) * (1 - f) * f / (1 - f * f) : 0);  // the sum of all bounces
+            const double thin_r =
+                f + (f < 1 ? (1 - f) * (1 - f) * f / (1 - f * f) : 0);  // the sum of all bounces
             int glass = 0, thin = 0;
             constexpr int kTries = 100000;
             for (int i = 0; i < kTries; ++i) {
@@ -149,8 +159,10 @@ TEST_CASE("smooth reflection: the weight is Fresnel's reflectance") {
     for (const float z : {1.0f, 0.5f, 0.1f, 0.01f}) {
         const Vec3f wo{safe_sqrt(1 - z * z), 0, z};
         const auto dielectric = SmoothReflection<DielectricFresnel>{{1.5f}}.sample(wo, {}, 0);
-        CHECK(dielectric->weight.x == doctest::Approx(fresnel_double(static_cast<double>(z), 1.5)).epsilon(1e-5));
-        const auto mirror = SmoothReflection<MetalFresnel>{{Color(1.0f), Color(1.0f)}}.sample(wo, {}, 0);
+        CHECK(dielectric->weight.x ==
+              doctest::Approx(fresnel_double(static_cast<double>(z), 1.5)).epsilon(1e-5));
+        const auto mirror =
+            SmoothReflection<MetalFresnel>{{Color(1.0f), Color(1.0f)}}.sample(wo, {}, 0);
         CHECK(mirror->weight == Color(1.0f));
     }
 }

@@ -1,4 +1,5 @@
-// The numbers behind every sample: nets, independence, and the maps and tables that they go through.
+// The numbers behind every sample: nets, independence, and the maps and tables that they go
+// through.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -12,7 +13,8 @@ using namespace tessera;
 
 namespace {
 
-// True if every elementary interval 2^-a x 2^-(k-a) holds exactly one of the 2^k points from `first` on.
+// True if every elementary interval 2^-a x 2^-(k-a) holds exactly one of the 2^k points from
+// `first` on.
 bool is_net(std::uint32_t seed, std::uint32_t pair, std::uint32_t first, int k) {
     const std::uint32_t n = 1u << k;
     for (int a = 0; a <= k; ++a) {
@@ -29,14 +31,18 @@ bool is_net(std::uint32_t seed, std::uint32_t pair, std::uint32_t first, int k) 
     return true;
 }
 
-double even_p(const std::vector<double>& counts, double expected) { return pooled_chi_square_p(counts, std::vector<double>(counts.size(), expected)); }
+double even_p(const std::vector<double>& counts, double expected) {
+    return pooled_chi_square_p(counts, std::vector<double>(counts.size(), expected));
+}
 
 }  // namespace
 
 TEST_CASE("sampler: every block of 2^k samples of a pair is a (0,k,2)-net") {
     for (std::uint32_t s = 0; s < 12; ++s) {
-        const std::uint32_t seed = pixel_seed(static_cast<int>(37 * s), static_cast<int>(11 * s), s);
-        for (const std::uint32_t pair : {dim::kFilter, dim::vertex(0, dim::kLight), dim::vertex(3, dim::kBsdf), 0x20008u}) {
+        const std::uint32_t seed =
+            pixel_seed(static_cast<int>(37 * s), static_cast<int>(11 * s), s);
+        for (const std::uint32_t pair :
+             {dim::kFilter, dim::vertex(0, dim::kLight), dim::vertex(3, dim::kBsdf), 0x20008u}) {
             for (int k = 0; k <= 10; k += 2) {
                 CAPTURE(s);
                 CAPTURE(pair);
@@ -82,20 +88,23 @@ TEST_CASE("sampler: one sample per pixel is uniform over pixels") {
 }
 
 TEST_CASE("sampler: pairs, neighbours and seeds are independent of each other") {
-    // Correlation of 256 stratified values, over 2000 pixels: its mean must vanish and its spread be that of chance.
+    // Correlation of 256 stratified values, over 2000 pixels: its mean must vanish and its spread
+    // be that of chance.
     struct Link {
         std::uint32_t pair_a, pair_b;
         int dx;
         std::uint64_t seed_b;
     };
-    const Link links[] = {{8, 9, 0, 0}, {8, 10, 0, 0}, {9, 10, 0, 0}, {0, 8, 0, 0}, {8, 16, 0, 0}, {8, 8, 1, 0}, {8, 8, 0, 1}, {10, 18, 0, 0}};
+    const Link links[] = {{8, 9, 0, 0},  {8, 10, 0, 0}, {9, 10, 0, 0}, {0, 8, 0, 0},
+                          {8, 16, 0, 0}, {8, 8, 1, 0},  {8, 8, 0, 1},  {10, 18, 0, 0}};
     for (const Link& link : links) {
         CAPTURE(link.pair_a);
         CAPTURE(link.pair_b);
         CAPTURE(link.dx);
         Mean xx, xy;
         for (int pixel = 0; pixel < 2000; ++pixel) {
-            const std::uint32_t a = pixel_seed(pixel * 3, 7, 0), b = pixel_seed(pixel * 3 + link.dx, 7, link.seed_b);
+            const std::uint32_t a = pixel_seed(pixel * 3, 7, 0),
+                                b = pixel_seed(pixel * 3 + link.dx, 7, link.seed_b);
             double cxx = 0, cxy = 0;
             constexpr int kCount = 256;
             for (std::uint32_t i = 0; i < kCount; ++i) {
@@ -121,7 +130,8 @@ TEST_CASE("sampler: scrambled points integrate without bias") {
         double sum = 0;
         for (std::uint32_t i = 0; i < 16; ++i) {
             const Vec2f p = sample_pair(pixel_seed(pixel, 1, 2), i, 8);
-            sum += std::exp(static_cast<double>(p.x)) * static_cast<double>(p.y) * static_cast<double>(p.y);
+            sum += std::exp(static_cast<double>(p.x)) * static_cast<double>(p.y) *
+                   static_cast<double>(p.y);
         }
         mean.add(sum / 16);
     }
@@ -152,7 +162,9 @@ TEST_CASE("distribution: points fall into cells by weight, evenly within, and pd
     std::vector<double> weights;
     double sum = 0;
     Random n(8);
-    for (int i = 0; i < kW * kH; ++i) weights.push_back(i % 6 == 2 ? 0.0 : (i == 17 ? 60.0 : static_cast<double>(n.unit()))), sum += weights.back();
+    for (int i = 0; i < kW * kH; ++i)
+        weights.push_back(i % 6 == 2 ? 0.0 : (i == 17 ? 60.0 : static_cast<double>(n.unit()))),
+            sum += weights.back();
     const Distribution2D table(kW, kH, weights);
     std::vector<double> observed(weights.size()), expected, within(16);
     for (double w : weights) expected.push_back(w / sum * kTries);
@@ -161,7 +173,9 @@ TEST_CASE("distribution: points fall into cells by weight, evenly within, and pd
         const float x = s.uv.x * kW, y = s.uv.y * kH;
         ++observed[std::size_t(y) * kW + std::size_t(x)];
         ++within[std::size_t((x - std::floor(x)) * 4) * 4 + std::size_t((y - std::floor(y)) * 4)];
-        REQUIRE(s.pdf == doctest::Approx(weights[std::size_t(y) * kW + std::size_t(x)] / sum * kW * kH).epsilon(1e-4));
+        REQUIRE(s.pdf ==
+                doctest::Approx(weights[std::size_t(y) * kW + std::size_t(x)] / sum * kW * kH)
+                    .epsilon(1e-4));
         REQUIRE(table.pdf(s.uv) == doctest::Approx(static_cast<double>(s.pdf)).epsilon(1e-4));
     }
     CHECK(pooled_chi_square_p(observed, expected) > 0.001);
@@ -175,29 +189,44 @@ TEST_CASE("warps: each makes the density that its comment claims") {
     test.seed = 12;
     test.charts = {{{0, 0, 1}, true}, {{0, 0, -1}, true}};
     const auto unit = [](Vec3f w) { return std::optional(normalize(Vec3d(w))); };
-    const auto p_of = [&](auto warp, auto pdf) { return sphere_chi_square(test, [&](Random& n) { return unit(warp(n.pair())); }, pdf).p; };
-    CHECK(p_of([](Vec2f u) { return warp_cosine(u); }, [](Vec3d w) { return std::max(0.0, w.z / kPiD); }) > 0.001);
+    const auto p_of = [&](auto warp, auto pdf) {
+        return sphere_chi_square(
+                   test, [&](Random& n) { return unit(warp(n.pair())); }, pdf)
+            .p;
+    };
+    CHECK(p_of([](Vec2f u) { return warp_cosine(u); },
+               [](Vec3d w) { return std::max(0.0, w.z / kPiD); }) > 0.001);
     CHECK(p_of([](Vec2f u) { return warp_sphere(u); }, [](Vec3d) { return 0.25 / kPiD; }) > 0.001);
     for (const float one_minus_cos : {1e-5f, 0.1f, 0.9f}) {
         const double k = static_cast<double>(one_minus_cos);
         CHECK(p_of([&](Vec2f u) { return warp_cone(u, one_minus_cos); },
-                   [&](Vec3d w) { return 1 - w.z / length(w) < k ? 0.5 / (kPiD * k) : 0.0; }) > 0.001);
+                   [&](Vec3d w) { return 1 - w.z / length(w) < k ? 0.5 / (kPiD * k) : 0.0; }) >
+              0.001);
     }
-    // Discs, lifted to the hemisphere: uniform on the disc is cosine above it. Triangles by barycentric strips.
+    // Discs, lifted to the hemisphere: uniform on the disc is cosine above it. Triangles by
+    // barycentric strips.
     const auto lift = [](Vec2f d) { return Vec3f{d.x, d.y, safe_sqrt(1 - d.x * d.x - d.y * d.y)}; };
-    CHECK(p_of([&](Vec2f u) { return lift(warp_disc(u)); }, [](Vec3d w) { return std::max(0.0, w.z / kPiD); }) > 0.001);
-    CHECK(p_of([&](Vec2f u) { return lift(warp_disc_concentric(u)); }, [](Vec3d w) { return std::max(0.0, w.z / kPiD); }) > 0.001);
+    CHECK(p_of([&](Vec2f u) { return lift(warp_disc(u)); },
+               [](Vec3d w) { return std::max(0.0, w.z / kPiD); }) > 0.001);
+    CHECK(p_of([&](Vec2f u) { return lift(warp_disc_concentric(u)); },
+               [](Vec3d w) { return std::max(0.0, w.z / kPiD); }) > 0.001);
     Random n(21);
     std::vector<double> strips(24);
     constexpr int kTries = 1 << 18;
     for (int i = 0; i < kTries; ++i) {
         const Vec2f b = warp_triangle(n.pair());
         REQUIRE(b.x + b.y <= 1.000001f);
-        const double c[3] = {static_cast<double>(b.x), static_cast<double>(b.y), std::max(0.0, 1 - static_cast<double>(b.x) - static_cast<double>(b.y))};
+        const double c[3] = {
+            static_cast<double>(b.x), static_cast<double>(b.y),
+            std::max(0.0, 1 - static_cast<double>(b.x) - static_cast<double>(b.y))};
         // 1 - (1 - c)^2 is uniform for each barycentric coordinate.
-        for (std::size_t k = 0; k < 3; ++k) ++strips[k * 8 + std::min<std::size_t>(7, std::size_t((1 - (1 - c[k]) * (1 - c[k])) * 8))];
+        for (std::size_t k = 0; k < 3; ++k)
+            ++strips[k * 8 +
+                     std::min<std::size_t>(7, std::size_t((1 - (1 - c[k]) * (1 - c[k])) * 8))];
     }
-    for (std::size_t k = 0; k < 3; ++k) CHECK(even_p({strips.begin() + long(k * 8), strips.begin() + long(k * 8 + 8)}, kTries / 8.0) > 0.001);
+    for (std::size_t k = 0; k < 3; ++k)
+        CHECK(even_p({strips.begin() + long(k * 8), strips.begin() + long(k * 8 + 8)},
+                     kTries / 8.0) > 0.001);
 }
 
 TEST_CASE("power heuristic: the two weights of a direction add to one") {

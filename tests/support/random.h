@@ -1,6 +1,6 @@
 #pragma once
-// Independent random numbers for statistical tests: the renderer's own points are stratified, which a chi-square test
-// would take for too good a fit.
+// Independent random numbers for statistical tests: the renderer's own points are stratified, which
+// a chi-square test would take for too good a fit.
 
 #include <cstdint>
 
@@ -28,7 +28,8 @@ public:
     }
     /// Uniform on the sphere.
     Vec3d direction() {
-        const double z = 2 * static_cast<double>(unit()) - 1, a = 6.283185307179586 * static_cast<double>(unit());
+        const double z = 2 * static_cast<double>(unit()) - 1,
+                     a = 6.283185307179586 * static_cast<double>(unit());
         const double r = std::sqrt(std::max(0.0, 1 - z * z));
         return {r * std::cos(a), r * std::sin(a), z};
     }

@@ -1,10 +1,11 @@
 #pragma once
 // Pearson's chi-square test of sampled directions against the density that is claimed for them.
 //
-// The sphere is cut into bins of about equal chance: rings around an axis, rings into sectors, at the quantiles of a
-// pilot run with other numbers. That resolves a lobe of a thousandth of a radian as well as a wide one. The expected
-// counts are the integrals of the density over the bins, by adaptive quadrature; directions that were not made
-// (failed samples) are one more bin, with what the density lacks to one.
+// The sphere is cut into bins of about equal chance: rings around an axis, rings into sectors, at
+// the quantiles of a pilot run with other numbers. That resolves a lobe of a thousandth of a radian
+// as well as a wide one. The expected counts are the integrals of the density over the bins, by
+// adaptive quadrature; directions that were not made (failed samples) are one more bin, with what
+// the density lacks to one.
 
 #include <algorithm>
 #include <cmath>
@@ -17,8 +18,8 @@
 
 namespace tessera {
 
-/// A part of the sphere, and the direction around which its bins lie. A density that jumps at the horizon wants a
-/// hemisphere to each side: then no bin has the jump inside.
+/// A part of the sphere, and the direction around which its bins lie. A density that jumps at the
+/// horizon wants a hemisphere to each side: then no bin has the jump inside.
 struct SphereChart {
     Vec3d axis{0, 0, 1};
     bool hemisphere = false;
@@ -30,7 +31,9 @@ struct SphereTest {
     std::vector<SphereChart> charts;
     std::uint64_t seed = 1;
     int samples = 1 << 17;
-    int rings = 20, sectors = 20;
+    int rings = 16, sectors = 16;
+    int min_depth =
+        2;  // halvings of a bin before the quadrature may stop; more for densities with sharp edges
 };
 
 struct SphereTestResult {
@@ -69,7 +72,8 @@ struct Cell {
     double theta0, theta1, phi0, phi1;
 };
 
-/// Integral of density(Polar) over the cell: 3 x 3 Gauss points, halved both ways until that changes nothing.
+/// Integral of density(Polar) over the cell: 3 x 3 Gauss points, halved both ways until that
+/// changes nothing.
 template <class Density>
 class CellIntegral {
 public:
@@ -79,7 +83,7 @@ public:
     double over(const Cell& cell) const { return refine(cell, gauss(cell), tolerance_, 0); }
 
 private:
-    static constexpr int kMaxDepth = 10;
+    static constexpr int kMaxDepth = 9;
 
     double gauss(const Cell& c) const {
         constexpr double kNode[3] = {-0.77459666924148338, 0, 0.77459666924148338};
@@ -89,19 +93,25 @@ private:
         for (int i = 0; i < 3; ++i) {
             const double theta = c.theta0 + dt * 0.5 * (1 + kNode[i]);
             double row = 0;
-            for (int j = 0; j < 3; ++j) row += kWeight[j] * density_(Polar{theta, c.phi0 + dp * 0.5 * (1 + kNode[j])});
+            for (int j = 0; j < 3; ++j)
+                row += kWeight[j] * density_(Polar{theta, c.phi0 + dp * 0.5 * (1 + kNode[j])});
             sum += kWeight[i] * row * std::sin(theta);
         }
         return sum * dt * dp;
     }
     double refine(const Cell& c, double coarse, double tolerance, int depth) const {
         const double tm = 0.5 * (c.theta0 + c.theta1), pm = 0.5 * (c.phi0 + c.phi1);
-        const Cell parts[4] = {{c.theta0, tm, c.phi0, pm}, {c.theta0, tm, pm, c.phi1}, {tm, c.theta1, c.phi0, pm}, {tm, c.theta1, pm, c.phi1}};
+        const Cell parts[4] = {{c.theta0, tm, c.phi0, pm},
+                               {c.theta0, tm, pm, c.phi1},
+                               {tm, c.theta1, c.phi0, pm},
+                               {tm, c.theta1, pm, c.phi1}};
         double fine[4], sum = 0;
         for (int i = 0; i < 4; ++i) sum += fine[i] = gauss(parts[i]);
-        if (depth >= kMaxDepth || (depth >= min_depth_ && std::fabs(sum - coarse) < tolerance)) return sum;
+        if (depth >= kMaxDepth || (depth >= min_depth_ && std::fabs(sum - coarse) < tolerance))
+            return sum;
         sum = 0;
-        // Along an edge two of the four cells go on; half the tolerance each keeps the whole within it.
+        // Along an edge two of the four cells go on; half the tolerance each keeps the whole within
+        // it.
         for (int i = 0; i < 4; ++i) sum += refine(parts[i], fine[i], tolerance * 0.5, depth + 1);
         return sum;
     }
@@ -111,70 +121,95 @@ private:
     int min_depth_;
 };
 
+/// Edges from lo to hi: `parts` quantiles of the sorted values, and beyond the outermost of them
+/// steps that grow threefold, so that no cell has a narrow peak or a long tail hidden in a corner.
+inline std::vector<double> graded_edges(const std::vector<double>& sorted, std::size_t parts,
+                                        double lo, double hi) {
+    std::vector<double> inner;
+    for (std::size_t k = 1; k < parts && !sorted.empty(); ++k) {
+        const double q = sorted[sorted.size() * k / parts];
+        if (q > lo && q < hi && (inner.empty() || q > inner.back())) inner.push_back(q);
+    }
+    if (inner.size() < 2)
+        return {lo, lo + 0.25 * (hi - lo), lo + 0.5 * (hi - lo), lo + 0.75 * (hi - lo), hi};
+    std::vector<double> edges;
+    for (double step = inner[1] - inner[0], e = inner.front() - step; e > lo; step *= 3, e -= step)
+        edges.push_back(e);
+    edges.push_back(lo);
+    std::reverse(edges.begin(), edges.end());
+    edges.insert(edges.end(), inner.begin(), inner.end());
+    for (double step = inner.back() - inner[inner.size() - 2], e = inner.back() + step; e < hi;
+         step *= 3, e += step)
+        edges.push_back(e);
+    edges.push_back(hi);
+    return edges;
+}
+
 struct Ring {
     double theta1 = 0;
     std::vector<double> phi;  // edges, from -pi to pi
     int first_bin = 0;
-    bool tail = false;
 };
 
 class Bins {
 public:
-    Bins(const SphereChart& chart, std::vector<Polar> pilot, int rings, int sectors, int first_bin) : axis_(chart.axis) {
-        constexpr double kPiD = 3.14159265358979323846;
+    Bins(const SphereChart& chart, std::vector<Polar> pilot, int rings, int sectors, int first_bin)
+        : axis_(chart.axis), bins_(first_bin) {
         std::sort(pilot.begin(), pilot.end(), [](Polar a, Polar b) { return a.theta < b.theta; });
-        const int n = static_cast<int>(pilot.size());
-        sectors = std::clamp(n / 40, 1, sectors);
-        rings = std::clamp(n / (40 * sectors), 1, rings);
-        bins_ = first_bin;
-        for (int r = 0; r < rings && n > 0; ++r) {
-            const int lo = int(std::int64_t(n) * r / rings), hi = int(std::int64_t(n) * (r + 1) / rings);
-            const double edge = r + 1 < rings ? pilot[std::size_t(hi)].theta : std::min(1.1 * pilot.back().theta, chart.end());
+        std::vector<double> theta;
+        for (const Polar& p : pilot) theta.push_back(p.theta);
+        const std::vector<double> edges = graded_edges(theta, std::size_t(rings), 0, chart.end());
+        std::vector<double> shared = graded_edges({}, 1, -kPiD, kPiD);
+        auto first = pilot.begin();
+        for (std::size_t r = 1; r < edges.size(); ++r) {
+            const auto last =
+                std::find_if(first, pilot.end(), [&](Polar p) { return p.theta > edges[r]; });
             std::vector<double> phi;
-            for (int i = lo; i < hi; ++i) phi.push_back(pilot[std::size_t(i)].phi);
+            for (auto p = first; p != last; ++p) phi.push_back(p->phi);
             std::sort(phi.begin(), phi.end());
-            if (r == 0 && pilot[0].theta > 1e-9) add({0.9 * pilot[0].theta, {-kPiD, 0, kPiD}, bins_, true});
-            // Where a narrow lobe ends, wide bins without samples begin: the quadrature must not look for it there.
-            const double margin = 0.1 * (phi.back() - phi.front());
-            Ring ring{edge, {-kPiD}, bins_, false};
-            if (phi.front() - margin > -kPiD) ring.phi.push_back(phi.front() - margin);
-            for (int s = 1; s < sectors; ++s) ring.phi.push_back(phi[phi.size() * std::size_t(s) / std::size_t(sectors)]);
-            if (phi.back() + margin < kPiD) ring.phi.push_back(phi.back() + margin);
-            ring.phi.push_back(kPiD);
-            add(std::move(ring));
+            // A ring with few samples is cut as its neighbour is.
+            if (phi.size() >= 200) shared = graded_edges(phi, std::size_t(sectors), -kPiD, kPiD);
+            first = last;
+            rings_.push_back({edges[r], shared, bins_});
+            bins_ += static_cast<int>(shared.size()) - 1;
         }
-        if (rings_.empty() || rings_.back().theta1 < chart.end()) {
-            add({chart.end(), {-kPiD, -0.75 * kPiD, -0.5 * kPiD, -0.25 * kPiD, 0, 0.25 * kPiD, 0.5 * kPiD, 0.75 * kPiD, kPiD}, bins_, true});
+        // The innermost rings come before the first that has samples.
+        const auto good = std::find_if(rings_.begin(), rings_.end(),
+                                       [](const Ring& r) { return r.phi.size() != 5; });
+        if (good == rings_.end()) return;
+        for (auto r = rings_.begin(); r != good; ++r) r->phi = good->phi;
+        bins_ = first_bin;
+        for (Ring& r : rings_) {
+            r.first_bin = bins_;
+            bins_ += static_cast<int>(r.phi.size()) - 1;
         }
     }
     int end() const { return bins_; }
     int find(Vec3d w) const {
         const Polar p = axis_.polar(w);
-        auto ring = std::lower_bound(rings_.begin(), rings_.end(), p.theta, [](const Ring& r, double theta) { return r.theta1 < theta; });
+        auto ring = std::lower_bound(rings_.begin(), rings_.end(), p.theta,
+                                     [](const Ring& r, double theta) { return r.theta1 < theta; });
         if (ring == rings_.end()) --ring;
         const auto edge = std::upper_bound(ring->phi.begin() + 1, ring->phi.end() - 1, p.phi);
         return ring->first_bin + static_cast<int>(edge - ring->phi.begin()) - 1;
     }
     template <class Pdf>
-    void integrate(const Pdf& pdf, std::vector<double>& out) const {
+    void integrate(const Pdf& pdf, int min_depth, std::vector<double>& out) const {
         const auto density = [&](Polar p) { return pdf(axis_.direction(p)); };
         double theta0 = 0;
         for (const Ring& ring : rings_) {
-            // 2e-7 of 131 072 samples is a fortieth of a count.
-            const CellIntegral integral(density, 2e-7, ring.tail ? 3 : 2);
+            // 5e-7 of 131 072 samples is a fifteenth of a count.
+            const CellIntegral integral(density, 5e-7, min_depth);
             for (std::size_t s = 0; s + 1 < ring.phi.size(); ++s) {
-                out[std::size_t(ring.first_bin) + s] = integral.over({theta0, ring.theta1, ring.phi[s], ring.phi[s + 1]});
+                out[std::size_t(ring.first_bin) + s] =
+                    integral.over({theta0, ring.theta1, ring.phi[s], ring.phi[s + 1]});
             }
             theta0 = ring.theta1;
         }
     }
 
 private:
-    void add(Ring ring) {
-        bins_ += static_cast<int>(ring.phi.size()) - 1;
-        rings_.push_back(std::move(ring));
-    }
-
+    static constexpr double kPiD = 3.14159265358979323846;
     Axis axis_;
     std::vector<Ring> rings_;
     int bins_ = 0;
@@ -183,10 +218,12 @@ private:
 }  // namespace sphere_detail
 
 /// p-value of observed against expected counts; bins that expect fewer than five are pooled.
-inline double pooled_chi_square_p(const std::vector<double>& observed, const std::vector<double>& expected, int* bins_out = nullptr) {
+inline double pooled_chi_square_p(const std::vector<double>& observed,
+                                  const std::vector<double>& expected, int* bins_out = nullptr) {
     std::vector<std::size_t> order(expected.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return expected[a] < expected[b]; });
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return expected[a] < expected[b]; });
     double value = 0, pool_observed = 0, pool_expected = 0;
     int bins = 0;
     for (std::size_t k = 0; k < order.size(); ++k) {
@@ -202,7 +239,8 @@ inline double pooled_chi_square_p(const std::vector<double>& observed, const std
     return bins > 1 ? chi_square_p(value, bins - 1) : (value < 1e-3 ? 1.0 : 0.0);
 }
 
-/// sample(Random&) -> std::optional<Vec3d>, unit; pdf(Vec3d) -> double, per solid angle. Charts must not overlap.
+/// sample(Random&) -> std::optional<Vec3d>, unit; pdf(Vec3d) -> double, per solid angle. Charts
+/// must not overlap.
 template <class Sample, class Pdf>
 SphereTestResult sphere_chi_square(const SphereTest& test, const Sample& sample, const Pdf& pdf) {
     using namespace sphere_detail;
@@ -234,7 +272,7 @@ SphereTestResult sphere_chi_square(const SphereTest& test, const Sample& sample,
         ++observed[c < bins.size() ? std::size_t(bins[c].find(*w)) : std::size_t(count)];
     }
     SphereTestResult result;
-    for (const Bins& b : bins) b.integrate(pdf, expected);
+    for (const Bins& b : bins) b.integrate(pdf, test.min_depth, expected);
     for (double& e : expected) {
         result.integral += e;
         e *= test.samples;

@@ -15,7 +15,8 @@ inline double log_gamma(double x) {
     return shift + (x - 0.5) * std::log(x) - x + 0.91893853320467274178 + series;
 }
 
-/// Regularised upper incomplete gamma function Q(a, x). DLMF 8.11.4 (series) and 8.9.2 (continued fraction).
+/// Regularised upper incomplete gamma function Q(a, x). DLMF 8.11.4 (series) and 8.9.2 (continued
+/// fraction).
 inline double gamma_q(double a, double x) {
     if (!(x > 0)) return 1;
     const double front = std::exp(a * std::log(x) - x - log_gamma(a));
@@ -37,19 +38,23 @@ inline double gamma_q(double a, double x) {
 }
 
 /// Chance of a chi-square value at least this large.
-inline double chi_square_p(double value, double degrees) { return gamma_q(0.5 * degrees, 0.5 * value); }
+inline double chi_square_p(double value, double degrees) {
+    return gamma_q(0.5 * degrees, 0.5 * value);
+}
 
 /// Chance of a standard normal value at least this far from zero.
 inline double normal_p(double z) { return std::erfc(std::fabs(z) / 1.4142135623730951); }
 
-/// The same for Student's t. Wallace, "Bounds on Normal Approximations to Student's...", Ann. Math. Stat. 30, 1959, eq. 4.
+/// The same for Student's t. Wallace, "Bounds on Normal Approximations to Student's...", Ann. Math.
+/// Stat. 30, 1959, eq. 4.
 inline double student_p(double t, double degrees) {
-    const double z = (8 * degrees + 1) / (8 * degrees + 3) * std::sqrt(degrees * std::log1p(t * t / degrees));
+    const double z =
+        (8 * degrees + 1) / (8 * degrees + 3) * std::sqrt(degrees * std::log1p(t * t / degrees));
     return normal_p(z);
 }
 
-/// Level of each of `tests` independent tests so that one or more fails by chance with probability alpha.
-/// Sidak, "Rectangular Confidence Regions...", J. Am. Stat. Assoc. 62, 1967.
+/// Level of each of `tests` independent tests so that one or more fails by chance with probability
+/// alpha. Sidak, "Rectangular Confidence Regions...", J. Am. Stat. Assoc. 62, 1967.
 inline double sidak_level(double alpha, std::size_t tests) {
     return -std::expm1(std::log1p(-alpha) / static_cast<double>(tests));
 }

@@ -13,8 +13,8 @@ namespace {
 
 // Rays leaving random points of random faces: how many run into the face they left.
 struct Probe {
-    float size = 1;       // of the faces
-    float distance = 0;   // of the faces from the origin
+    float size = 1;      // of the faces
+    float distance = 0;  // of the faces from the origin
     bool axis_planes = false;
     bool quads = false;
     bool instanced = false;
@@ -46,20 +46,24 @@ Geometry one_face(const Probe& probe, std::mt19937& rng) {
     Placement placed;
     placed.material = 0;
     if (probe.instanced) {
-        placed.instance_at(Affined(Affinef({u(rng), u(rng), u(rng)}, {u(rng), u(rng), u(rng)}, {u(rng), u(rng), u(rng)}, {u(rng) * probe.distance, 0, u(rng)})));
+        placed.instance_at(
+            Affined(Affinef({u(rng), u(rng), u(rng)}, {u(rng), u(rng), u(rng)},
+                            {u(rng), u(rng), u(rng)}, {u(rng) * probe.distance, 0, u(rng)})));
     }
     g.placements.push_back(placed);
     return g;
 }
 
-// Faces with an aspect beyond 50 have a plane that single precision does not know; they are the stress suite's matter.
+// Faces with an aspect beyond 50 have a plane that single precision does not know; they are the
+// stress suite's matter.
 bool fair(const Geometry& g) {
     const auto& p = g.meshes[0].positions;
     const Vec3f e1 = p[1] - p[0], e2 = p[2] - p[0];
     const float longest = std::fmax(length2(e1), std::fmax(length2(e2), length2(e2 - e1)));
     const Affinef& m = g.placements[0].to_world;
     const float stretch = std::fmax(length(m.x), std::fmax(length(m.y), length(m.z)));
-    return length(cross(e1, e2)) > 0.02f * longest && std::fabs(m.determinant()) > 0.02f * stretch * stretch * stretch;
+    return length(cross(e1, e2)) > 0.02f * longest &&
+           std::fabs(m.determinant()) > 0.02f * stretch * stretch * stretch;
 }
 
 int self_hits(const Probe& probe, int faces, int rays) {
@@ -75,7 +79,7 @@ int self_hits(const Probe& probe, int faces, int rays) {
             hit.prim = 0, hit.geom = 0, hit.inst = probe.instanced ? 0 : kNone;
             const Vec2f b = warp_triangle({u(rng), u(rng)});
             hit.u = b.x, hit.v = b.y;
-            const SurfacePoint s = surface_point(g, accel.target(hit), hit, Ray{}, {});
+            const SurfacePoint s = surface_point(g, accel.target(hit), hit, Ray{}, false);
             // From straight up to a hundredth of a degree above the face, on either side.
             const float cosine = std::pow(10.0f, -4.0f * u(rng));
             const SinCos a = sincos_turn(u(rng));
