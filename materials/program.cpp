@@ -126,11 +126,8 @@ ShaderProgram::ShaderProgram(const MaterialDesc& desc) : m_(folded(desc)) {
 
 SurfaceParams ShaderProgram::surface(const ShadeInput& in, const TextureStore* store) const noexcept {
     SurfaceParams p = constant_;
+    p.base_color = base_color(in, store);
     if (facts_.textured) {
-        if (m_.base_color.texture >= 0 || m_.base_weight.texture >= 0) {
-            p.base_color = read(m_.base_color, in, store) * read(m_.base_weight, in, store);
-            p.base_color = min(max(p.base_color, Color(0.0f)), Color(1.0f));
-        }
         if (m_.base_metalness.texture >= 0) p.base_metalness = clamp01(read(m_.base_metalness, in, store));
         if (m_.specular_weight.texture >= 0) p.specular_weight = clamp01(read(m_.specular_weight, in, store));
         if (m_.specular_color.texture >= 0) {
@@ -145,8 +142,16 @@ SurfaceParams ShaderProgram::surface(const ShadeInput& in, const TextureStore* s
             p.transmission_color = min(max(read(m_.transmission_color, in, store), Color(0.0f)), Color(1.0f));
         }
     }
-    if (facts_.vertex_color) p.base_color *= in.vertex_color;
     return p;
+}
+
+Color ShaderProgram::base_color(const ShadeInput& in, const TextureStore* store) const noexcept {
+    Color c = constant_.base_color;
+    if (m_.base_color.texture >= 0 || m_.base_weight.texture >= 0) {
+        c = read(m_.base_color, in, store) * read(m_.base_weight, in, store);
+        c = min(max(c, Color(0.0f)), Color(1.0f));
+    }
+    return facts_.vertex_color ? c * in.vertex_color : c;
 }
 
 Color ShaderProgram::emission(const ShadeInput& in, const TextureStore* store) const noexcept {

@@ -42,6 +42,8 @@ public:
 
     /// The surface's parameters at a point. store may be null if nothing is textured.
     SurfaceParams surface(const ShadeInput& in, const TextureStore* store) const noexcept;
+    /// surface().base_color alone: all that a Lambertian surface has.
+    Color base_color(const ShadeInput& in, const TextureStore* store) const noexcept;
     /// Radiance leaving the surface by itself.
     Color emission(const ShadeInput& in, const TextureStore* store) const noexcept;
     /// Mean emission over the texture, for choosing lights.

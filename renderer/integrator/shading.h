@@ -79,14 +79,22 @@ FacingFrame facing_frame(const SurfacePoint& s, const ShaderProgram& program, co
     return f;
 }
 
+/// What openpbr_lobes makes of a Lambertian surface, without the detour.
+inline LobeList diffuse_lobes(Color base_color) {
+    LobeList lobes;
+    lobes.push(DiffuseLobe{}, base_color);
+    lobes.prepare({});
+    return lobes;
+}
+
 template <Features F>
 Lobes<F> make_lobes(const ShaderProgram& program, const ShadeInput& in,
                     const TextureStore* textures, const FacingFrame& f) {
-    const SurfaceParams p = program.surface(in, textures);
     if constexpr (F.specular || F.transmission) {
-        return openpbr_lobes(p, f.wo, f.front);
+        if (!program.facts().specular) return diffuse_lobes(program.base_color(in, textures));
+        return openpbr_lobes(program.surface(in, textures), f.wo, f.front);
     } else {
-        return DiffuseOnly(p.base_color);
+        return DiffuseOnly(program.base_color(in, textures));
     }
 }
 

@@ -265,10 +265,11 @@ void read_keys(const Value& value, const KeyList& keys, void* object, const Read
                               at.subject + ": " + at.noun + " '" + key.name + "' is missing");
         }
     }
-    for (const auto& [name, entry] : *value.table()) {
+    for (const auto& entry : *value.table()) {
+        const std::string& name = entry.first;
         const auto same = [&](const Key& key) { return key.name == name; };
         const bool known = std::any_of(keys.keys.begin(), keys.keys.end(), same);
-        if (!known) report_unknown(name, entry, keys, at);
+        if (!known) report_unknown(name, entry.second, keys, at);
     }
 }
 

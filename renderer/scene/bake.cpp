@@ -42,7 +42,7 @@ Mesh bake_mesh(const MeshDesc& desc, const Affined& place, const BakeNeeds& need
     const bool mirrored = place.determinant() < 0;
     for (std::size_t i = 0; i + 2 < desc.normals.size(); i += 3) {
         const Vec3d n =
-            place.normal(Vec3d{desc.normals[i], desc.normals[i + 1], desc.normals[i + 2]});
+            place.normal(Vec3d(Vec3f{desc.normals[i], desc.normals[i + 1], desc.normals[i + 2]}));
         const double l = length(n);
         mesh.normals.push_back(l > 0 ? Vec3f(n / l) : Vec3f{0, 0, 0});
     }

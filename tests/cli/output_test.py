@@ -96,8 +96,8 @@ class Streams(TesseraTest):
 
     def shell(self, line):
         args = ["bash", "-c", f'exec "$0" {line}', *command()]
-        done = subprocess.run(args, cwd=self.folder, stdin=subprocess.DEVNULL, capture_output=True, timeout=20 * SLOWDOWN)
-        return done.returncode
+        streams = {"stdin": subprocess.DEVNULL, "capture_output": True}
+        return subprocess.run(args, cwd=self.folder, timeout=20 * SLOWDOWN, **streams).returncode
 
     def test_closed_streams_never_get_into_the_picture(self):
         for closed in (">&-", "2>&-", "<&-", "<&- >&- 2>&-"):
