@@ -1,6 +1,8 @@
 #pragma once
 // The lobes of one surface point, on the stack: which there are, with what weight and chance.
 
+#include <new>
+#include <type_traits>
 #include <variant>
 
 #include "materials/lobes/diffuse.h"
@@ -28,14 +30,14 @@ public:
     template <class Model>
     void push(const Model& model, Color weight) {
         if (!(max_component(weight) > 0.0f) || size_ == kCapacity) return;
-        lobes_[size_++] = {model, weight, 0.0f, Model::kDelta};
+        new (&slots_[size_++].lobe) Lobe{model, weight, 0.0f, Model::kDelta};
     }
     /// Fixes the chances: in proportion to what each lobe gives back toward wo.
     void prepare(Vec3f wo) noexcept;
 
     bool empty() const noexcept { return size_ == 0; }
     int size() const noexcept { return size_; }
-    const Lobe& operator[](int i) const noexcept { return lobes_[i]; }
+    const Lobe& operator[](int i) const noexcept { return slots_[i].lobe; }
     bool has_smooth_part() const noexcept;     // some lobe is a delta
     bool has_extended_part() const noexcept;   // some lobe is not
 
@@ -47,7 +49,13 @@ public:
     Color albedo(Vec3f wo) const noexcept;
 
 private:
-    Lobe lobes_[kCapacity];
+    // Slots start empty: setting up lobes that are never pushed cost more than the pushing.
+    union Slot {
+        Slot() {}
+        Lobe lobe;
+    };
+    static_assert(std::is_trivially_destructible_v<Lobe> && std::is_trivially_copyable_v<Lobe>);
+    Slot slots_[kCapacity];
     int size_ = 0;
 };
 
@@ -55,30 +63,30 @@ private:
 
 inline void LobeList::prepare(Vec3f wo) noexcept {
     if (size_ == 1) {
-        lobes_[0].pick = 1.0f;
+        slots_[0].lobe.pick = 1.0f;
         return;
     }
     float sum = 0;
     for (int i = 0; i < size_; ++i) {
-        Lobe& lobe = lobes_[i];
+        Lobe& lobe = slots_[i].lobe;
         const Color albedo = std::visit([&](const auto& m) { return m.albedo(wo); }, lobe.model);
         lobe.pick = max_component(lobe.weight * albedo);
         sum += lobe.pick;
     }
     const float scale = sum > 0.0f ? 1.0f / sum : 0.0f;
-    for (int i = 0; i < size_; ++i) lobes_[i].pick = sum > 0.0f ? lobes_[i].pick * scale : 1.0f / static_cast<float>(size_);
+    for (int i = 0; i < size_; ++i) slots_[i].lobe.pick = sum > 0.0f ? slots_[i].lobe.pick * scale : 1.0f / static_cast<float>(size_);
 }
 
 inline bool LobeList::has_smooth_part() const noexcept {
     for (int i = 0; i < size_; ++i) {
-        if (lobes_[i].delta) return true;
+        if (slots_[i].lobe.delta) return true;
     }
     return false;
 }
 
 inline bool LobeList::has_extended_part() const noexcept {
     for (int i = 0; i < size_; ++i) {
-        if (!lobes_[i].delta) return true;
+        if (!slots_[i].lobe.delta) return true;
     }
     return false;
 }
@@ -86,7 +94,7 @@ inline bool LobeList::has_extended_part() const noexcept {
 inline LobeEval LobeList::eval(Vec3f wo, Vec3f wi) const noexcept {
     LobeEval sum;
     for (int i = 0; i < size_; ++i) {
-        const Lobe& lobe = lobes_[i];
+        const Lobe& lobe = slots_[i].lobe;
         if (lobe.delta) continue;
         const LobeEval e = std::visit([&](const auto& m) { return m.eval(wo, wi); }, lobe.model);
         sum.f += e.f * lobe.weight;
@@ -99,8 +107,8 @@ inline std::optional<LobeSample> LobeList::sample(Vec3f wo, Vec2f u, float choic
     if (size_ == 0) return std::nullopt;
     int chosen = 0;
     float below = 0;
-    while (chosen < size_ - 1 && choice >= below + lobes_[chosen].pick) below += lobes_[chosen++].pick;
-    const Lobe& lobe = lobes_[chosen];
+    while (chosen < size_ - 1 && choice >= below + slots_[chosen].lobe.pick) below += slots_[chosen++].lobe.pick;
+    const Lobe& lobe = slots_[chosen].lobe;
     if (!(lobe.pick > 0.0f)) return std::nullopt;
     const float rest = size_ == 1 ? choice : std::min((choice - below) / lobe.pick, 0x1.fffffep-1f);
     if (size_ == 1 || lobe.delta) {
@@ -129,7 +137,7 @@ inline std::optional<LobeSample> LobeList::sample(Vec3f wo, Vec2f u, float choic
 inline Color LobeList::albedo(Vec3f wo) const noexcept {
     Color sum(0.0f);
     for (int i = 0; i < size_; ++i) {
-        sum += lobes_[i].weight * std::visit([&](const auto& m) { return m.albedo(wo); }, lobes_[i].model);
+        sum += slots_[i].lobe.weight * std::visit([&](const auto& m) { return m.albedo(wo); }, slots_[i].lobe.model);
     }
     return sum;
 }

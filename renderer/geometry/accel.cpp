@@ -1,5 +1,8 @@
 #include "renderer/geometry/accel.h"
 
+#include <immintrin.h>
+
+#include <cstddef>
 #include <cstring>
 #include <map>
 #include <new>
@@ -42,13 +45,13 @@ void expand(LaneMask lanes, int (&valid)[kLanes]) {
     for (int i = 0; i < kLanes; ++i) valid[i] = (lanes >> i) & 1u ? -1 : 0;
 }
 
-RTCRay single_ray(const Ray& ray) {
-    RTCRay r;
-    r.org_x = ray.o.x, r.org_y = ray.o.y, r.org_z = ray.o.z, r.tnear = 0;
-    r.dir_x = ray.d.x, r.dir_y = ray.d.y, r.dir_z = ray.d.z, r.time = 0;
+// Embree reads origin and direction as vectors of four: stored as such, they are forwarded without a stall.
+void fill(RTCRay& r, const Ray& ray) {
+    static_assert(offsetof(RTCRay, tnear) == offsetof(RTCRay, org_x) + 12 && offsetof(RTCRay, time) == offsetof(RTCRay, dir_x) + 12);
+    _mm_store_ps(&r.org_x, _mm_setr_ps(ray.o.x, ray.o.y, ray.o.z, 0.0f));
+    _mm_store_ps(&r.dir_x, _mm_setr_ps(ray.d.x, ray.d.y, ray.d.z, 0.0f));
     r.tfar = ray.t_max;
     r.mask = ray.mask, r.id = 0, r.flags = 0;
-    return r;
 }
 
 }  // namespace
@@ -228,15 +231,16 @@ Accel::Accel(const Geometry& geometry, const AccelOptions& options)
 
 Accel::~Accel() = default;
 
-Hit Accel::intersect(const Ray& ray, std::uint32_t seed) const noexcept {
+void Accel::intersect(const Ray& ray, std::uint32_t seed, Hit& hit) const noexcept {
     RTCRayHit rh;
-    rh.ray = single_ray(ray);
+    fill(rh.ray, ray);
     rh.hit.geomID = rh.hit.primID = rh.hit.instID[0] = kNone;
     CallContext call;
     call.opacity = impl_->opacity;
     call.seeds = &seed;
     embree::intersect1(impl_->scene, call, &rh);
-    return {rh.hit.primID, rh.hit.geomID, rh.hit.instID[0], rh.hit.u, rh.hit.v, rh.ray.tfar};
+    hit.prim = rh.hit.primID, hit.geom = rh.hit.geomID, hit.inst = rh.hit.instID[0];
+    hit.u = rh.hit.u, hit.v = rh.hit.v, hit.t = rh.ray.tfar;
 }
 
 void Accel::intersect(HitPacket& rays, LaneMask lanes, const std::uint32_t (&seeds)[kLanes],
@@ -252,7 +256,8 @@ void Accel::intersect(HitPacket& rays, LaneMask lanes, const std::uint32_t (&see
 }
 
 bool Accel::occluded(const Ray& ray, std::uint32_t seed) const noexcept {
-    RTCRay r = single_ray(ray);
+    RTCRay r;
+    fill(r, ray);
     CallContext call;
     call.opacity = impl_->opacity;
     call.seeds = &seed;

@@ -41,7 +41,12 @@ public:
 
     /// Nearest hit of one ray. The ray has been checked by traceable(). seed feeds the opacity
     /// test.
-    Hit intersect(const Ray& ray, std::uint32_t seed) const noexcept;
+    void intersect(const Ray& ray, std::uint32_t seed, Hit& hit) const noexcept;
+    Hit intersect(const Ray& ray, std::uint32_t seed) const noexcept {
+        Hit hit;
+        intersect(ray, seed, hit);
+        return hit;
+    }
     /// The same for the lanes of a packet; hits are left in the packet. Bits of a lane do not
     /// depend on the others.
     void intersect(HitPacket& rays, LaneMask lanes, const std::uint32_t (&seeds)[kLanes],

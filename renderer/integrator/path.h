@@ -69,7 +69,6 @@ private:
             const int i = std::countr_zero(m);
             out_[i] = PathSample{};
             Lane& lane = lanes_[i];
-            lane = Lane{};
             const Vec2f offset = job_.filter->offset(film.at(i));
             const Vec2f at{static_cast<float>(lane_x(job_, i)) + 0.5f + offset.x,
                            static_cast<float>(lane_y(job_, i)) + 0.5f + offset.y};
@@ -104,13 +103,15 @@ private:
             scene_.accel().intersect(packet_, alive_, seeds_, true);
             for (LaneMask m = alive_; m != 0; m &= m - 1) {
                 const int i = std::countr_zero(m);
-                arrive(i, packet_.hit(i));
+                hits_[i] = packet_.hit(i);
+                arrive(i);
             }
         } else {
             for (LaneMask m = alive_; m != 0; m &= m - 1) {
                 const int i = std::countr_zero(m);
                 if (job_.log) job_.log->single(lanes_[i].ray, seeds_[i], false);
-                arrive(i, scene_.accel().intersect(lanes_[i].ray, seeds_[i]));
+                scene_.accel().intersect(lanes_[i].ray, seeds_[i], hits_[i]);
+                arrive(i);
             }
         }
         for (LaneMask m = alive_; m != 0; m &= m - 1) {
@@ -119,8 +120,8 @@ private:
         }
     }
 
-    void arrive(int i, const Hit& hit) noexcept {
-        hits_[i] = hit;
+    void arrive(int i) noexcept {
+        const Hit& hit = hits_[i];
         if (!hit.valid()) return;
         targets_[i] = scene_.accel().target(hit);
         prefetch_indices(scene_.geometry(), targets_[i], hit);
@@ -198,16 +199,17 @@ private:
         const float weight = light.delta ? 1.0f : mis_power(light.pdf, e.pdf);
         const Color c = lane.throughput * e.f * light.radiance * (weight / light.pdf);
         if (!(max_component(c) > 0.0f)) return;
-        const Vec3f o = offset_origin(s.p, s.p_error, s.ng, light.wi);
-        Ray ray{o, light.wi, kInfinity, kOtherRays};
-        if (!light.infinite) {
-            const Vec3f to = offset_origin(light.p, light.p_error, light.n, -light.wi);
-            ray.d = to - o;
+        Ray& ray = shadow_[i];
+        ray.o = offset_origin(s.p, s.p_error, s.ng, light.wi);
+        if (light.infinite) {
+            ray.d = light.wi;
+            ray.t_max = kInfinity;
+        } else {
+            ray.d = offset_origin(light.p, light.p_error, light.n, -light.wi) - ray.o;
             ray.t_max = 0x1.fffffcp-1f;  // the end itself is not in the way
         }
         if (!traceable(ray.o, ray.d)) return invalid(InvalidCause::shadow_ray, i);
         lane.pending = c;
-        shadow_[i] = ray;
         shadow_lanes_ |= 1u << i;
     }
 
@@ -277,7 +279,10 @@ private:
             }
         }
         lane.from = s.p;
-        lane.ray = {offset_origin(s.p, s.p_error, s.ng, wi), wi, kInfinity, kOtherRays};
+        lane.ray.o = offset_origin(s.p, s.p_error, s.ng, wi);
+        lane.ray.d = wi;
+        lane.ray.t_max = kInfinity;
+        lane.ray.mask = kOtherRays;
         lane.cone_spread = std::max(lane.cone_spread, b->spread);
         if (!b->delta) lane.layers_done = true;
         if (!traceable(lane.ray.o, lane.ray.d)) {

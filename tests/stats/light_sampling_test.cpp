@@ -23,6 +23,7 @@ struct LightCase {
     Vec3f ref;
     Vec3d axis;                        // toward the light
     std::function<double(Vec3d)> pdf;  // what light_pdf says of the points along a direction
+    Vec3d across{0, 0, 0};             // flat lights: a pole beside which they are a patch, not a ring
 };
 
 double claimed(const Light& light, Vec3f ref, Vec3d w, double t, Vec3d n,
@@ -33,7 +34,7 @@ double claimed(const Light& light, Vec3f ref, Vec3d w, double t, Vec3d n,
 }
 
 LightCase quad_case(std::string name, const QuadLight& q, Vec3f ref) {
-    LightCase c{std::move(name), std::make_shared<Light>(q), ref, {}, {}};
+    LightCase c{std::move(name), std::make_shared<Light>(q), ref, {}, {}, Vec3d{0.01, 1, 0.02}};
     c.axis = Vec3d(q.corner + (q.edge_u + q.edge_v) * 0.5f - ref);
     c.pdf = [q, ref, light = c.light](Vec3d w) {
         const Vec3d n = cross(Vec3d(q.edge_u), Vec3d(q.edge_v));
@@ -49,7 +50,7 @@ LightCase quad_case(std::string name, const QuadLight& q, Vec3f ref) {
 }
 
 LightCase disc_case(std::string name, const DiscLight& l, Vec3f ref) {
-    LightCase c{std::move(name), std::make_shared<Light>(l), ref, Vec3d(l.center - ref), {}};
+    LightCase c{std::move(name), std::make_shared<Light>(l), ref, Vec3d(l.center - ref), {}, Vec3d(l.normal)};
     c.pdf = [l, ref, light = c.light](Vec3d w) {
         const Vec3d n(l.normal);
         const double t = dot(Vec3d(l.center - ref), n) / dot(w, n);
@@ -108,7 +109,8 @@ LightCase mesh_case(std::string name, Vec3f ref) {
                 std::make_shared<Light>(built->lights()[0]),
                 ref,
                 Vec3d{0, 2.4, 0.5} - Vec3d(ref),
-                {}};
+                {},
+                Vec3d{0.01, 0.2, 1}};
     c.pdf = [ref, light = c.light](Vec3d w) {
         double sum = 0;
         for (const auto& t : std::get<MeshLight>(*light).triangles) {
@@ -197,11 +199,11 @@ std::vector<LightCase> all_lights() {
 
 std::string chi_square_failure(const LightCase& c, double level) {
     SphereTest test;
-    test.charts = {{c.axis, false}};
+    const Vec3d toward = normalize(c.axis), pole = c.across - toward * dot(c.across, toward);
+    test.charts = {length2(pole) > 0 ? SphereChart{pole, false, toward} : SphereChart{c.axis, false, {}}};
     test.seed = 99;
-    test.min_depth = 4;
-    const SphereTestResult r = sphere_chi_square(
-        test,
+    const SphereTestResult r = sphere_chi_square_above(
+        level, test,
         [&](Random& n) -> std::optional<Vec3d> {
             LightSample s;
             if (!sample_light(*c.light, {c.ref}, n.pair(), s)) return std::nullopt;

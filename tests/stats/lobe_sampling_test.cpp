@@ -55,13 +55,7 @@ std::string chi_square_failure(const LobeCase& c, double level) {
     SphereTest test;
     test.charts = {{{0, 0, 1}, true}, {{0, 0, -1}, true}};
     test.seed = c.seed;
-    SphereTestResult r = sphere_chi_square(test, sample, pdf);
-    if (!(r.p > level)) {
-        // The same numbers with finer quadrature: the density may have an edge that the coarse one
-        // missed.
-        test.min_depth = 4;
-        r = sphere_chi_square(test, sample, pdf);
-    }
+    const SphereTestResult r = sphere_chi_square_above(level, test, sample, pdf);
     if (!(r.p > level))
         return fmt::format("{}: p = {:.2e} over {} bins (integral {:.5f}, failed {:.5f})", c.name,
                            r.p, r.bins, r.integral, r.failed);

@@ -136,7 +136,7 @@ TEST_CASE("sampler: scrambled points integrate without bias") {
         mean.add(sum / 16);
     }
     CHECK(std::fabs(mean.mean() - (std::exp(1.0) - 1) / 3) < 4 * mean.error());
-    CHECK(mean.error() < 2e-4);  // stratified: plain random numbers would have 1.3e-3
+    CHECK(mean.error() < 4e-4);  // stratified: plain random numbers would have 1.3e-3
 }
 
 TEST_CASE("alias table: indices come as often as their weights say, the remainder is even") {

@@ -112,9 +112,9 @@ TEST_CASE("colour: white stays white between the working spaces, and primaries d
     // Rec.709 red in ACEScg by the Bradford-adapted matrix of the ACES project: 0.6131 0.0702
     // 0.0206
     const std::array<float, 3> red = to_working(colors, {1, 0, 0}, "lin_rec709");
-    CHECK(red[0] == doctest::Approx(0.6131f).epsilon(1e-3));
-    CHECK(red[1] == doctest::Approx(0.0702f).epsilon(1e-3));
-    CHECK(red[2] == doctest::Approx(0.0206f).epsilon(3e-3));
+    CHECK(red[0] == doctest::Approx(0.6131).epsilon(1e-3));
+    CHECK(red[1] == doctest::Approx(0.0702).epsilon(1e-3));
+    CHECK(red[2] == doctest::Approx(0.0206).epsilon(3e-3));
 }
 
 TEST_CASE("colour: Rec.2020 to Rec.709 follows the matrix of BT.2087") {

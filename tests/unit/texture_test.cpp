@@ -149,7 +149,8 @@ TEST_CASE("texture: mip levels are means of light, not of codes") {
 
 TEST_CASE("texture: the coarsest level is the mean, whatever the size") {
     const TempFolder folder;
-    for (const auto& [w, h] : {std::pair{64, 64}, {37, 21}, {1, 65}, {100, 3}, {5, 1}, {1, 1}}) {
+    for (const auto& size : {std::pair{64, 64}, {37, 21}, {1, 65}, {100, 3}, {5, 1}, {1, 1}}) {
+        const int w = size.first, h = size.second;
         CAPTURE(w);
         CAPTURE(h);
         std::vector<std::uint16_t> values;
