@@ -265,7 +265,7 @@ struct RenderDesc {
     int max_diffuse_depth = 5;
     int max_glossy_depth = 8;
     int max_transmission_depth = 12;
-    int min_depth = 3;  // no Russian roulette before this many bounces
+    int min_depth = 1;  // no Russian roulette before this many bounces
 };
 
 struct SceneDesc {

@@ -92,7 +92,7 @@ void mesh_texture_frame(const Mesh& mesh, const Hit& hit, SurfacePoint& s) {
 // Embree solves the sphere in float; its t only says which of the two roots was meant.
 void sphere_point(const Sphere& sphere, const Ray& local, float t, SurfacePoint& s) {
     const Vec3d d(local.d), oc = Vec3d(local.o) - Vec3d(sphere.center);
-    const double r = sphere.radius, a = length2(d), b = dot(oc, d);
+    const double r = static_cast<double>(sphere.radius), a = length2(d), b = dot(oc, d);
     const Vec3d closest =
         oc - d * (b / a);  // nearest point of the line to the centre: no cancellation
     const double reach = std::sqrt(std::max(0.0, (r * r - length2(closest)) / a));
