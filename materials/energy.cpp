@@ -12,7 +12,8 @@ namespace {
 
 constexpr int kMu = 24, kAlpha = 16, kEta = 12;
 
-// The axes are bent so that cells are small where the albedo curves: near grazing, near smooth, near eta = 1.
+// The axes are bent so that cells are small where the albedo curves: near grazing, near smooth,
+// near eta = 1.
 float mu_at(float x) { return std::max(x * x, 1e-4f); }
 float alpha_at(float x) { return x * x; }
 float eta_at(float x) { return 1.0f + 3.0f * x * x; }
@@ -24,7 +25,8 @@ struct Table {
             for (int a = 0; a < kAlpha; ++a) {
                 for (int m = 0; m < kMu; ++m) {
                     values[(e * kAlpha + a) * kMu + m] = dielectric_reflection_albedo_quadrature(
-                        mu_at(static_cast<float>(m) / (kMu - 1)), alpha_at(static_cast<float>(a) / (kAlpha - 1)),
+                        mu_at(static_cast<float>(m) / (kMu - 1)),
+                        alpha_at(static_cast<float>(a) / (kAlpha - 1)),
                         eta_at(static_cast<float>(e) / (kEta - 1)), 12);
                 }
             }
@@ -52,10 +54,13 @@ float dielectric_reflection_albedo_quadrature(float cos_o, float alpha, float et
     double sum = 0;
     for (int i = 0; i < n; ++i) {
         for (int j = 0; j < n; ++j) {
-            const Vec2f u{(static_cast<float>(i) + 0.5f) / static_cast<float>(n), (static_cast<float>(j) + 0.5f) / static_cast<float>(n)};
+            const Vec2f u{(static_cast<float>(i) + 0.5f) / static_cast<float>(n),
+                          (static_cast<float>(j) + 0.5f) / static_cast<float>(n)};
             const Vec3f h = ggx.sample_visible(wo, u);
             const Vec3f wi = reflect(wo, h);
-            if (wi.z > 0.0f) sum += static_cast<double>(fresnel_dielectric(clamp01(dot(wo, h)), eta) * ggx.g2(wo, wi) / g1);
+            if (wi.z > 0.0f)
+                sum += static_cast<double>(fresnel_dielectric(clamp01(dot(wo, h)), eta) *
+                                           ggx.g2(wo, wi) / g1);
         }
     }
     return static_cast<float>(sum / (static_cast<double>(n) * n));

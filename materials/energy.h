@@ -1,11 +1,13 @@
 #pragma once
-// How much light a rough dielectric boundary sends back, over all directions: what a base below it does not get.
+// How much light a rough dielectric boundary sends back, over all directions: what a base below it
+// does not get.
 
 namespace tessera {
 
-/// Directional albedo of GGX reflection off a dielectric, single scattering. cos_o in (0, 1], alpha in [0, 1],
-/// eta = index beyond over here, in [1, 4] (clamped). Interpolated from a table made at the first call by
-/// quadrature over the visible normals; absolute error below 0.004 (tests/unit/energy_test.cpp).
+/// Directional albedo of GGX reflection off a dielectric, single scattering. cos_o in (0, 1], alpha
+/// in [0, 1], eta = index beyond over here, in [1, 4] (clamped). Interpolated from a table made at
+/// the first call by quadrature over the visible normals; absolute error below 0.004
+/// (tests/unit/energy_test.cpp).
 float dielectric_reflection_albedo(float cos_o, float alpha, float eta) noexcept;
 
 /// The same along cos_o alone, for a boundary that does not vary: made once per material.

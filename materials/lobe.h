@@ -1,6 +1,7 @@
 #pragma once
-// What every lobe agrees on. Directions are unit, point away from the surface, and live in the local frame
-// (z = shading normal) with wo.z > 0. Values include the cosine: f = bsdf * |wi.z|. Pdfs are per solid angle.
+// What every lobe agrees on. Directions are unit, point away from the surface, and live in the
+// local frame (z = shading normal) with wo.z > 0. Values include the cosine: f = bsdf * |wi.z|.
+// Pdfs are per solid angle.
 
 #include <cstdint>
 #include <optional>
@@ -17,19 +18,21 @@ struct LobeEval {
     float pdf = 0;
 };
 
-/// Lobes have eval(wo, wi), sample(wo, u, choice), albedo(wo), and, unless they are deltas, direction(): sample()
-/// without weight and pdf, for when those of several lobes together are wanted.
+/// Lobes have eval(wo, wi), sample(wo, u, choice), albedo(wo), and, unless they are deltas,
+/// direction(): sample() without weight and pdf, for when those of several lobes together are
+/// wanted.
 struct LobeSample {
     Vec3f wi;
-    Color weight;         // f / pdf; for a delta lobe the whole ratio
-    float pdf = 0;        // 0 for a delta lobe
+    Color weight;   // f / pdf; for a delta lobe the whole ratio
+    float pdf = 0;  // 0 for a delta lobe
     LobeClass cls = LobeClass::diffuse;
     bool delta = false;
-    float eta = 1;        // index on wi's side over wo's side; 1 unless refracted
-    float spread = 0;     // half angle by which a ray cone grows, radians, rough
+    float eta = 1;     // index on wi's side over wo's side; 1 unless refracted
+    float spread = 0;  // half angle by which a ray cone grows, radians, rough
 };
 
-/// Relative luminance of linear Rec.709; near enough for choosing lobes and lights in any working space.
+/// Relative luminance of linear Rec.709; near enough for choosing lobes and lights in any working
+/// space.
 constexpr float luminance(Color c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 
 }  // namespace tessera

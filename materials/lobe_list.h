@@ -11,9 +11,9 @@
 
 namespace tessera {
 
-using LobeModel = std::variant<DiffuseLobe, RoughReflection<DielectricFresnel>, RoughReflection<MetalFresnel>,
-                               SmoothReflection<DielectricFresnel>, SmoothReflection<MetalFresnel>, RoughGlass,
-                               SmoothGlass, ThinGlass>;
+using LobeModel = std::variant<DiffuseLobe, RoughReflection<DielectricFresnel>,
+                               RoughReflection<MetalFresnel>, SmoothReflection<DielectricFresnel>,
+                               SmoothReflection<MetalFresnel>, RoughGlass, SmoothGlass, ThinGlass>;
 
 struct Lobe {
     LobeModel model;
@@ -26,7 +26,8 @@ class LobeList {
 public:
     static constexpr int kCapacity = 4;
 
-    /// Lobes of no weight are not kept; beyond the capacity nothing is (the surface builders stay within it).
+    /// Lobes of no weight are not kept; beyond the capacity nothing is (the surface builders stay
+    /// within it).
     template <class Model>
     void push(const Model& model, Color weight) {
         if (!(max_component(weight) > 0.0f) || size_ == kCapacity) return;
@@ -38,8 +39,8 @@ public:
     bool empty() const noexcept { return size_ == 0; }
     int size() const noexcept { return size_; }
     const Lobe& operator[](int i) const noexcept { return slots_[i].lobe; }
-    bool has_smooth_part() const noexcept;     // some lobe is a delta
-    bool has_extended_part() const noexcept;   // some lobe is not
+    bool has_smooth_part() const noexcept;    // some lobe is a delta
+    bool has_extended_part() const noexcept;  // some lobe is not
 
     /// All lobes that are not deltas, with the density of sample().
     LobeEval eval(Vec3f wo, Vec3f wi) const noexcept;
@@ -74,7 +75,9 @@ inline void LobeList::prepare(Vec3f wo) noexcept {
         sum += lobe.pick;
     }
     const float scale = sum > 0.0f ? 1.0f / sum : 0.0f;
-    for (int i = 0; i < size_; ++i) slots_[i].lobe.pick = sum > 0.0f ? slots_[i].lobe.pick * scale : 1.0f / static_cast<float>(size_);
+    for (int i = 0; i < size_; ++i)
+        slots_[i].lobe.pick =
+            sum > 0.0f ? slots_[i].lobe.pick * scale : 1.0f / static_cast<float>(size_);
 }
 
 inline bool LobeList::has_smooth_part() const noexcept {
@@ -107,7 +110,8 @@ inline std::optional<LobeSample> LobeList::sample(Vec3f wo, Vec2f u, float choic
     if (size_ == 0) return std::nullopt;
     int chosen = 0;
     float below = 0;
-    while (chosen < size_ - 1 && choice >= below + slots_[chosen].lobe.pick) below += slots_[chosen++].lobe.pick;
+    while (chosen < size_ - 1 && choice >= below + slots_[chosen].lobe.pick)
+        below += slots_[chosen++].lobe.pick;
     const Lobe& lobe = slots_[chosen].lobe;
     if (!(lobe.pick > 0.0f)) return std::nullopt;
     const float rest = size_ == 1 ? choice : std::min((choice - below) / lobe.pick, 0x1.fffffep-1f);
@@ -137,7 +141,8 @@ inline std::optional<LobeSample> LobeList::sample(Vec3f wo, Vec2f u, float choic
 inline Color LobeList::albedo(Vec3f wo) const noexcept {
     Color sum(0.0f);
     for (int i = 0; i < size_; ++i) {
-        sum += slots_[i].lobe.weight * std::visit([&](const auto& m) { return m.albedo(wo); }, slots_[i].lobe.model);
+        sum += slots_[i].lobe.weight *
+               std::visit([&](const auto& m) { return m.albedo(wo); }, slots_[i].lobe.model);
     }
     return sum;
 }

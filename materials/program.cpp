@@ -18,12 +18,18 @@ Color read(const ColorInput& input, const ShadeInput& in, const TextureStore* st
 
 float channel_of(const Texel& t, Channel channel) {
     switch (channel) {
-        case Channel::r: return t[0];
-        case Channel::g: return t[1];
-        case Channel::b: return t[2];
-        case Channel::a: return t[3];
-        case Channel::luminance: return luminance({t[0], t[1], t[2]});
-        case Channel::automatic: break;
+        case Channel::r:
+            return t[0];
+        case Channel::g:
+            return t[1];
+        case Channel::b:
+            return t[2];
+        case Channel::a:
+            return t[3];
+        case Channel::luminance:
+            return luminance({t[0], t[1], t[2]});
+        case Channel::automatic:
+            break;
     }
     return t[0];
 }
@@ -51,8 +57,8 @@ void visit_textures(Material& m, Visit visit) {
         visit(c->texture, TextureUse::color);
     }
     for (auto* f : {&m.base_weight, &m.base_metalness, &m.specular_weight, &m.specular_roughness,
-                                &m.specular_roughness_anisotropy, &m.transmission_weight, &m.emission_luminance,
-                                &m.geometry_opacity}) {
+                    &m.specular_roughness_anisotropy, &m.transmission_weight, &m.emission_luminance,
+                    &m.geometry_opacity}) {
         visit(f->texture, TextureUse::data);
     }
     visit(m.geometry_normal, TextureUse::data);
@@ -70,7 +76,8 @@ MaterialDesc folded(MaterialDesc m) {
     if (clear && zero(m.base_metalness)) m.base_color.texture = -1, m.base_weight.texture = -1;
     const bool dielectric_boundary = !zero(m.specular_weight) && m.specular_ior != 1.0f;
     if (!dielectric_boundary && zero(m.base_metalness) && zero(m.transmission_weight)) {
-        m.specular_color.texture = m.specular_roughness.texture = m.specular_roughness_anisotropy.texture = -1;
+        m.specular_color.texture = m.specular_roughness.texture =
+            m.specular_roughness_anisotropy.texture = -1;
     }
     return m;
 }
@@ -84,7 +91,8 @@ MaterialDesc remapped(MaterialDesc desc, std::span<const int> to) {
     return desc;
 }
 
-void collect_textures(const MaterialDesc& desc, std::vector<TextureUse>& use, std::vector<bool>& read) {
+void collect_textures(const MaterialDesc& desc, std::vector<TextureUse>& use,
+                      std::vector<bool>& read) {
     const MaterialDesc kept = folded(desc);
     visit_textures(kept, [&](int texture, TextureUse as) {
         if (texture < 0) return;
@@ -115,31 +123,43 @@ ShaderProgram::ShaderProgram(const MaterialDesc& desc) : m_(folded(desc)) {
     constant_.transmission_weight = value(m_.transmission_weight);
     constant_.transmission_color = color_of(m_.transmission_color.value);
     constant_.thin_walled = m_.geometry_thin_walled;
-    const bool same_boundary = m_.specular_roughness.texture < 0 && m_.specular_roughness_anisotropy.texture < 0 &&
+    const bool same_boundary = m_.specular_roughness.texture < 0 &&
+                               m_.specular_roughness_anisotropy.texture < 0 &&
                                m_.specular_weight.texture < 0;
-    if (same_boundary && facts_.specular && !one(m_.base_metalness) && !one(m_.transmission_weight)) {
-        const Ggx ggx = openpbr_ggx(constant_.specular_roughness, constant_.specular_roughness_anisotropy);
-        boundary_ = std::make_shared<ReflectionAlbedoCurve>(std::sqrt(ggx.ax * ggx.ay), openpbr_boundary_eta(constant_));
+    if (same_boundary && facts_.specular && !one(m_.base_metalness) &&
+        !one(m_.transmission_weight)) {
+        const Ggx ggx =
+            openpbr_ggx(constant_.specular_roughness, constant_.specular_roughness_anisotropy);
+        boundary_ = std::make_shared<ReflectionAlbedoCurve>(std::sqrt(ggx.ax * ggx.ay),
+                                                            openpbr_boundary_eta(constant_));
         constant_.boundary = boundary_.get();
     }
 }
 
-SurfaceParams ShaderProgram::surface(const ShadeInput& in, const TextureStore* store) const noexcept {
+SurfaceParams ShaderProgram::surface(const ShadeInput& in,
+                                     const TextureStore* store) const noexcept {
     SurfaceParams p = constant_;
     p.base_color = base_color(in, store);
     if (facts_.textured) {
-        if (m_.base_metalness.texture >= 0) p.base_metalness = clamp01(read(m_.base_metalness, in, store));
-        if (m_.specular_weight.texture >= 0) p.specular_weight = clamp01(read(m_.specular_weight, in, store));
+        if (m_.base_metalness.texture >= 0)
+            p.base_metalness = clamp01(read(m_.base_metalness, in, store));
+        if (m_.specular_weight.texture >= 0)
+            p.specular_weight = clamp01(read(m_.specular_weight, in, store));
         if (m_.specular_color.texture >= 0) {
-            p.specular_color = min(max(read(m_.specular_color, in, store), Color(0.0f)), Color(1.0f));
+            p.specular_color =
+                min(max(read(m_.specular_color, in, store), Color(0.0f)), Color(1.0f));
         }
-        if (m_.specular_roughness.texture >= 0) p.specular_roughness = clamp01(read(m_.specular_roughness, in, store));
+        if (m_.specular_roughness.texture >= 0)
+            p.specular_roughness = clamp01(read(m_.specular_roughness, in, store));
         if (m_.specular_roughness_anisotropy.texture >= 0) {
-            p.specular_roughness_anisotropy = clamp01(read(m_.specular_roughness_anisotropy, in, store));
+            p.specular_roughness_anisotropy =
+                clamp01(read(m_.specular_roughness_anisotropy, in, store));
         }
-        if (m_.transmission_weight.texture >= 0) p.transmission_weight = clamp01(read(m_.transmission_weight, in, store));
+        if (m_.transmission_weight.texture >= 0)
+            p.transmission_weight = clamp01(read(m_.transmission_weight, in, store));
         if (m_.transmission_color.texture >= 0) {
-            p.transmission_color = min(max(read(m_.transmission_color, in, store), Color(0.0f)), Color(1.0f));
+            p.transmission_color =
+                min(max(read(m_.transmission_color, in, store), Color(0.0f)), Color(1.0f));
         }
     }
     return p;
@@ -155,12 +175,14 @@ Color ShaderProgram::base_color(const ShadeInput& in, const TextureStore* store)
 }
 
 Color ShaderProgram::emission(const ShadeInput& in, const TextureStore* store) const noexcept {
-    return max(read(m_.emission_color, in, store) * read(m_.emission_luminance, in, store), Color(0.0f));
+    return max(read(m_.emission_color, in, store) * read(m_.emission_luminance, in, store),
+               Color(0.0f));
 }
 
 Color ShaderProgram::mean_emission(const TextureStore* store) const noexcept {
     Color c = color_of(m_.emission_color.value) * m_.emission_luminance.value;
-    for (const auto& [texture, grey] : {std::pair{m_.emission_color.texture, false}, std::pair{m_.emission_luminance.texture, true}}) {
+    for (const auto& [texture, grey] : {std::pair{m_.emission_color.texture, false},
+                                        std::pair{m_.emission_luminance.texture, true}}) {
         if (texture < 0) continue;
         const Texel t = store->mean(texture);
         c *= grey ? Color(channel_of(t, m_.emission_luminance.channel)) : Color{t[0], t[1], t[2]};
@@ -171,15 +193,18 @@ Color ShaderProgram::mean_emission(const TextureStore* store) const noexcept {
 float ShaderProgram::opacity(Vec2f uv, const TextureStore* store) const noexcept {
     const FloatInput& o = m_.geometry_opacity;
     if (o.texture < 0) return o.value;
-    const float v = channel_of(store->sample(o.texture, uv.x, uv.y, 0.0f), opacity_channel(o, store));
+    const float v =
+        channel_of(store->sample(o.texture, uv.x, uv.y, 0.0f), opacity_channel(o, store));
     return clamp01(o.value * (o.invert ? 1.0f - v : v));
 }
 
-std::optional<Vec3f> ShaderProgram::normal(const ShadeInput& in, const TextureStore* store) const noexcept {
+std::optional<Vec3f> ShaderProgram::normal(const ShadeInput& in,
+                                           const TextureStore* store) const noexcept {
     if (m_.geometry_normal < 0) return std::nullopt;
     const Texel t = store->sample(m_.geometry_normal, in.uv.x, in.uv.y, in.uv_width);
     const float s = m_.geometry_normal_scale;
-    const Vec3f n{(2.0f * t[0] - 1.0f) * s, (2.0f * t[1] - 1.0f) * s, std::max(2.0f * t[2] - 1.0f, 1e-3f)};
+    const Vec3f n{(2.0f * t[0] - 1.0f) * s, (2.0f * t[1] - 1.0f) * s,
+                  std::max(2.0f * t[2] - 1.0f, 1e-3f)};
     return normalize(n);
 }
 

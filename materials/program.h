@@ -1,5 +1,6 @@
 #pragma once
-// A material compiled once: constants folded, what cannot matter dropped, facts known. Run at every hit.
+// A material compiled once: constants folded, what cannot matter dropped, facts known. Run at every
+// hit.
 
 #include <cstdint>
 #include <memory>
@@ -15,21 +16,21 @@ namespace tessera {
 
 /// What a material can do; decides which kernel and which data a scene needs.
 struct ProgramFacts {
-    bool cutout = false;        // opacity can be below 1
+    bool cutout = false;  // opacity can be below 1
     bool opacity_textured = false;
     bool emissive = false;
-    bool specular = false;      // any lobe other than Lambert's
+    bool specular = false;  // any lobe other than Lambert's
     bool transmission = false;
-    bool textured = false;      // reads an image while shading
-    bool uv = false;            // reads texture coordinates
-    bool tangent = false;       // reads dpdu
+    bool textured = false;  // reads an image while shading
+    bool uv = false;        // reads texture coordinates
+    bool tangent = false;   // reads dpdu
     bool vertex_color = false;
 };
 
 /// What a program may ask of the point it shades.
 struct ShadeInput {
     Vec2f uv;
-    float uv_width = 0;        // footprint in uv units
+    float uv_width = 0;  // footprint in uv units
     Color vertex_color{1.0f};
 };
 
@@ -50,6 +51,7 @@ public:
     Color mean_emission(const TextureStore* store) const noexcept;
     /// 1: light stops here.
     float opacity(Vec2f uv, const TextureStore* store) const noexcept;
+    bool has_normal_map() const noexcept { return m_.geometry_normal >= 0; }
     /// Normal in the tangent frame from the normal map; none if there is no map.
     std::optional<Vec3f> normal(const ShadeInput& in, const TextureStore* store) const noexcept;
 
@@ -57,13 +59,16 @@ private:
     MaterialDesc m_;
     SurfaceParams constant_;  // what does not vary
     ProgramFacts facts_;
-    std::shared_ptr<const ReflectionAlbedoCurve> boundary_;  // shared: programs are copied into place
+    std::shared_ptr<const ReflectionAlbedoCurve>
+        boundary_;  // shared: programs are copied into place
 };
 
-/// The description with its texture indices taken through `to` (-1: not loaded because nothing reads it).
+/// The description with its texture indices taken through `to` (-1: not loaded because nothing
+/// reads it).
 MaterialDesc remapped(MaterialDesc desc, std::span<const int> to);
 
 /// Which textures a material reads, and as what.
-void collect_textures(const MaterialDesc& desc, std::vector<TextureUse>& use, std::vector<bool>& read);
+void collect_textures(const MaterialDesc& desc, std::vector<TextureUse>& use,
+                      std::vector<bool>& read);
 
 }  // namespace tessera

@@ -1,6 +1,7 @@
 #pragma once
-// A dielectric boundary that reflects and transmits: rough (Walter et al. 2007, with visible normals), smooth, and
-// the thin-walled sheet. Radiance is scaled by 1/eta^2 when it crosses (Veach 1997, section 5.2).
+// A dielectric boundary that reflects and transmits: rough (Walter et al. 2007, with visible
+// normals), smooth, and the thin-walled sheet. Radiance is scaled by 1/eta^2 when it crosses (Veach
+// 1997, section 5.2).
 
 #include "materials/fresnel.h"
 #include "materials/ggx.h"
@@ -44,8 +45,13 @@ struct RoughGlass {
         const bool reflected = choice < fresnel;
         const Vec3f wi = reflected ? reflect(wo, h) : normalize(refract(wo, h, eta, cos_t));
         if (reflected ? !(wi.z > 0.0f) : !(wi.z < 0.0f)) return std::nullopt;
-        return LobeSample{wi, Color(0.0f), 0.0f, reflected ? LobeClass::glossy : LobeClass::transmission, false,
-                          reflected ? 1.0f : eta, 0.25f * std::max(ggx.ax, ggx.ay)};
+        return LobeSample{wi,
+                          Color(0.0f),
+                          0.0f,
+                          reflected ? LobeClass::glossy : LobeClass::transmission,
+                          false,
+                          reflected ? 1.0f : eta,
+                          0.25f * std::max(ggx.ax, ggx.ay)};
     }
     std::optional<LobeSample> sample(Vec3f wo, Vec2f u, float choice) const {
         auto s = direction(wo, u, choice);
@@ -74,13 +80,19 @@ struct SmoothGlass {
         if (choice < fresnel) return reflected(wo);
         return transmitted(wo, cos_t);
     }
-    /// The two children of a ray tree, weighted by nothing: the caller multiplies by Fresnel's shares.
+    /// The two children of a ray tree, weighted by nothing: the caller multiplies by Fresnel's
+    /// shares.
     LobeSample reflected(Vec3f wo) const {
         return {{-wo.x, -wo.y, wo.z}, reflect_tint, 0.0f, LobeClass::glossy, true, 1.0f, 0.0f};
     }
     LobeSample transmitted(Vec3f wo, float cos_t) const {
-        return {normalize(refract(wo, {0, 0, 1}, eta, cos_t)), transmit_tint * (1.0f / (eta * eta)), 0.0f,
-                LobeClass::transmission, true, eta, 0.0f};
+        return {normalize(refract(wo, {0, 0, 1}, eta, cos_t)),
+                transmit_tint * (1.0f / (eta * eta)),
+                0.0f,
+                LobeClass::transmission,
+                true,
+                eta,
+                0.0f};
     }
     Color albedo(Vec3f wo) const {
         const float f = fresnel_dielectric(wo.z, eta);
@@ -88,7 +100,8 @@ struct SmoothGlass {
     }
 };
 
-/// Two parallel boundaries with nothing between: all internal bounces summed, no refraction in total.
+/// Two parallel boundaries with nothing between: all internal bounces summed, no refraction in
+/// total.
 struct ThinGlass {
     static constexpr bool kDelta = true;
     float eta = 1.5f;
@@ -101,7 +114,8 @@ struct ThinGlass {
     LobeEval eval(Vec3f, Vec3f) const { return {}; }
     std::optional<LobeSample> sample(Vec3f wo, Vec2f, float choice) const {
         if (choice < reflectance(wo.z)) {
-            return LobeSample{{-wo.x, -wo.y, wo.z}, reflect_tint, 0.0f, LobeClass::glossy, true, 1.0f, 0.0f};
+            return LobeSample{
+                {-wo.x, -wo.y, wo.z}, reflect_tint, 0.0f, LobeClass::glossy, true, 1.0f, 0.0f};
         }
         return LobeSample{-wo, transmit_tint, 0.0f, LobeClass::transmission, true, 1.0f, 0.0f};
     }

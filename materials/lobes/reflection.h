@@ -32,12 +32,19 @@ struct RoughReflection {
         const Vec3f h = sum / std::sqrt(l2);
         const float common = ggx.d(h) / (4.0f * wo.z);
         const float masked = 1.0f + ggx.lambda(wo);
-        return {fresnel(clamp01(dot(wo, h))) * (common / (masked + ggx.lambda(wi))), common / masked};
+        return {fresnel(clamp01(dot(wo, h))) * (common / (masked + ggx.lambda(wi))),
+                common / masked};
     }
     std::optional<LobeSample> direction(Vec3f wo, Vec2f u, float) const {
         const Vec3f wi = reflect(wo, ggx.sample_visible(wo, u));
         if (!(wi.z > 0.0f)) return std::nullopt;
-        return LobeSample{wi, Color(0.0f), 0.0f, LobeClass::glossy, false, 1.0f, 0.25f * std::max(ggx.ax, ggx.ay)};
+        return LobeSample{wi,
+                          Color(0.0f),
+                          0.0f,
+                          LobeClass::glossy,
+                          false,
+                          1.0f,
+                          0.25f * std::max(ggx.ax, ggx.ay)};
     }
     std::optional<LobeSample> sample(Vec3f wo, Vec2f u, float choice) const {
         auto s = direction(wo, u, choice);
@@ -58,7 +65,8 @@ struct SmoothReflection {
 
     LobeEval eval(Vec3f, Vec3f) const { return {}; }
     std::optional<LobeSample> sample(Vec3f wo, Vec2f, float) const {
-        return LobeSample{{-wo.x, -wo.y, wo.z}, fresnel(wo.z), 0.0f, LobeClass::glossy, true, 1.0f, 0.0f};
+        return LobeSample{
+            {-wo.x, -wo.y, wo.z}, fresnel(wo.z), 0.0f, LobeClass::glossy, true, 1.0f, 0.0f};
     }
     Color albedo(Vec3f wo) const { return fresnel(wo.z); }
 };

@@ -8,7 +8,8 @@ namespace tessera {
 namespace {
 
 template <class Fresnel>
-void push_reflection(LobeList& lobes, const Ggx& ggx, const Fresnel& fresnel, Color weight, Color albedo) {
+void push_reflection(LobeList& lobes, const Ggx& ggx, const Fresnel& fresnel, Color weight,
+                     Color albedo) {
     if (std::max(ggx.ax, ggx.ay) < kMinAlpha) {
         lobes.push(SmoothReflection<Fresnel>{fresnel}, weight);
     } else {
@@ -16,10 +17,12 @@ void push_reflection(LobeList& lobes, const Ggx& ggx, const Fresnel& fresnel, Co
     }
 }
 
-// A boundary is looked through undisturbed where the two indices agree; the half vector is undefined there.
+// A boundary is looked through undisturbed where the two indices agree; the half vector is
+// undefined there.
 constexpr float kSameIndex = 1e-4f;
 
-void push_transmission(LobeList& lobes, const SurfaceParams& p, const Ggx& ggx, float ior, bool front, Color weight) {
+void push_transmission(LobeList& lobes, const SurfaceParams& p, const Ggx& ggx, float ior,
+                       bool front, Color weight) {
     if (p.thin_walled) {
         lobes.push(ThinGlass{ior, p.specular_color, p.transmission_color}, weight);
         return;
@@ -64,14 +67,17 @@ LobeList openpbr_lobes(const SurfaceParams& p, Vec3f wo, bool front) noexcept {
             reflected = alpha < kMinAlpha ? fresnel_dielectric(wo.z, eta)
                         : p.boundary      ? (*p.boundary)(wo.z)
                                           : dielectric_reflection_albedo(wo.z, alpha, eta);
-            push_reflection(lobes, ggx, DielectricFresnel{eta}, p.specular_color * opaque, Color(reflected));
+            push_reflection(lobes, ggx, DielectricFresnel{eta}, p.specular_color * opaque,
+                            Color(reflected));
         }
         // Albedo scaling: the base gets what the boundary lets through. OpenPBR 1.1, "Layering".
-        lobes.push(DiffuseLobe{}, p.base_color * (Color(1.0f) - p.specular_color * reflected) * opaque);
+        lobes.push(DiffuseLobe{},
+                   p.base_color * (Color(1.0f) - p.specular_color * reflected) * opaque);
     }
     if (metal > 0.0f) {
         const MetalFresnel fresnel{p.base_color, p.specular_color};
-        push_reflection(lobes, ggx, fresnel, Color(metal * std::min(p.specular_weight, 1.0f)), fresnel(wo.z));
+        push_reflection(lobes, ggx, fresnel, Color(metal * std::min(p.specular_weight, 1.0f)),
+                        fresnel(wo.z));
     }
     if (clear > 0.0f) push_transmission(lobes, p, ggx, ior, front, Color(clear));
     lobes.prepare(wo);

@@ -1,6 +1,6 @@
 #pragma once
-// OpenPBR Surface 1.1, the part that exists now: its parameters at one point, and the lobes they make.
-// Andersson et al., "OpenPBR Surface Specification", Academy Software Foundation, 2024.
+// OpenPBR Surface 1.1, the part that exists now: its parameters at one point, and the lobes they
+// make. Andersson et al., "OpenPBR Surface Specification", Academy Software Foundation, 2024.
 
 #include "materials/energy.h"
 #include "materials/lobe_list.h"
@@ -9,7 +9,7 @@ namespace tessera {
 
 /// Parameters at a point, textures read.
 struct SurfaceParams {
-    Color base_color{0.8f};        // base_weight included
+    Color base_color{0.8f};  // base_weight included
     float base_metalness = 0;
     float specular_weight = 1;
     Color specular_color{1.0f};
@@ -19,7 +19,8 @@ struct SurfaceParams {
     float transmission_weight = 0;
     Color transmission_color{1.0f};
     bool thin_walled = false;
-    const ReflectionAlbedoCurve* boundary = nullptr;  // of the dielectric boundary if it is the same everywhere
+    const ReflectionAlbedoCurve* boundary =
+        nullptr;  // of the dielectric boundary if it is the same everywhere
 };
 
 /// Index of the opaque base's boundary, always entered from outside: at least 1.

@@ -75,7 +75,8 @@ AliasTable::Pick AliasTable::sample(float u) const noexcept {
     const int i = std::min(static_cast<int>(scaled), n - 1);
     const float within = std::min(scaled - static_cast<float>(i), 0x1.fffffep-1f);
     const Cell& cell = cells_[i];
-    if (within < cell.keep) return {static_cast<std::size_t>(i), cell.probability, within / cell.keep};
+    if (within < cell.keep)
+        return {static_cast<std::size_t>(i), cell.probability, within / cell.keep};
     const float rest = (within - cell.keep) / (1.0f - cell.keep);
     return {cell.alias, cells_[cell.alias].probability, std::min(rest, 0x1.fffffep-1f)};
 }

@@ -46,4 +46,25 @@ inline float acos_poly(float x) {
     return x < 0.0f ? kPi - r : r;
 }
 
+/// atan2(y, x) / (2 pi), in [-0.5, 0.5]; 0 for (0, 0). Abramowitz & Stegun 4.4.49: error below 1e-8
+/// turns and rounding.
+inline float atan2_turn(float y, float x) {
+    const float ax = std::fabs(x), ay = std::fabs(y);
+    const float big = std::max(ax, ay);
+    if (!(big > 0.0f)) return 0.0f;
+    const float z = std::min(ax, ay) / big, z2 = z * z;
+    float p = 0.0028662257f;
+    p = p * z2 - 0.0161657367f;
+    p = p * z2 + 0.0429096138f;
+    p = p * z2 - 0.0752896400f;
+    p = p * z2 + 0.1065626393f;
+    p = p * z2 - 0.1420889944f;
+    p = p * z2 + 0.1999355085f;
+    p = p * z2 - 0.3333314528f;
+    float turn = (p * z2 + 1.0f) * z * (0.5f * kInvPi);
+    if (ay > ax) turn = 0.25f - turn;
+    if (x < 0.0f) turn = 0.5f - turn;
+    return y < 0.0f ? -turn : turn;
+}
+
 }  // namespace tessera

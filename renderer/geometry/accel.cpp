@@ -45,9 +45,11 @@ void expand(LaneMask lanes, int (&valid)[kLanes]) {
     for (int i = 0; i < kLanes; ++i) valid[i] = (lanes >> i) & 1u ? -1 : 0;
 }
 
-// Embree reads origin and direction as vectors of four: stored as such, they are forwarded without a stall.
+// Embree reads origin and direction as vectors of four: stored as such, they are forwarded without
+// a stall.
 void fill(RTCRay& r, const Ray& ray) {
-    static_assert(offsetof(RTCRay, tnear) == offsetof(RTCRay, org_x) + 12 && offsetof(RTCRay, time) == offsetof(RTCRay, dir_x) + 12);
+    static_assert(offsetof(RTCRay, tnear) == offsetof(RTCRay, org_x) + 12 &&
+                  offsetof(RTCRay, time) == offsetof(RTCRay, dir_x) + 12);
     _mm_store_ps(&r.org_x, _mm_setr_ps(ray.o.x, ray.o.y, ray.o.z, 0.0f));
     _mm_store_ps(&r.dir_x, _mm_setr_ps(ray.d.x, ray.d.y, ray.d.z, 0.0f));
     r.tfar = ray.t_max;
@@ -243,8 +245,8 @@ void Accel::intersect(const Ray& ray, std::uint32_t seed, Hit& hit) const noexce
     hit.u = rh.hit.u, hit.v = rh.hit.v, hit.t = rh.ray.tfar;
 }
 
-void Accel::intersect(HitPacket& rays, LaneMask lanes, const std::uint32_t (&seeds)[kLanes],
-                      bool coherent) const noexcept {
+void Accel::intersect(HitPacket& rays, LaneMask lanes,
+                      const std::uint32_t (&seeds)[kLanes]) const noexcept {
     alignas(64) int valid[kLanes];
     expand(lanes, valid);
     std::memset(rays.geom, 0xff, sizeof rays.geom);
@@ -252,7 +254,7 @@ void Accel::intersect(HitPacket& rays, LaneMask lanes, const std::uint32_t (&see
     CallContext call;
     call.opacity = impl_->opacity;
     call.seeds = seeds;
-    embree::intersect16(valid, impl_->scene, call, reinterpret_cast<RTCRayHit16*>(&rays), coherent);
+    embree::intersect16(valid, impl_->scene, call, reinterpret_cast<RTCRayHit16*>(&rays));
 }
 
 bool Accel::occluded(const Ray& ray, std::uint32_t seed) const noexcept {
@@ -265,14 +267,14 @@ bool Accel::occluded(const Ray& ray, std::uint32_t seed) const noexcept {
     return r.tfar < 0.0f;
 }
 
-LaneMask Accel::occluded(RayPacket& rays, LaneMask lanes, const std::uint32_t (&seeds)[kLanes],
-                         bool coherent) const noexcept {
+LaneMask Accel::occluded(RayPacket& rays, LaneMask lanes,
+                         const std::uint32_t (&seeds)[kLanes]) const noexcept {
     alignas(64) int valid[kLanes];
     expand(lanes, valid);
     CallContext call;
     call.opacity = impl_->opacity;
     call.seeds = seeds;
-    embree::occluded16(valid, impl_->scene, call, reinterpret_cast<RTCRay16*>(&rays), coherent);
+    embree::occluded16(valid, impl_->scene, call, reinterpret_cast<RTCRay16*>(&rays));
     LaneMask blocked = 0;
     for (int i = 0; i < kLanes; ++i) blocked |= static_cast<LaneMask>(rays.t_max[i] < 0.0f) << i;
     return blocked & lanes;

@@ -49,12 +49,12 @@ public:
     }
     /// The same for the lanes of a packet; hits are left in the packet. Bits of a lane do not
     /// depend on the others.
-    void intersect(HitPacket& rays, LaneMask lanes, const std::uint32_t (&seeds)[kLanes],
-                   bool coherent) const noexcept;
+    void intersect(HitPacket& rays, LaneMask lanes,
+                   const std::uint32_t (&seeds)[kLanes]) const noexcept;
     bool occluded(const Ray& ray, std::uint32_t seed) const noexcept;
     /// Lanes of `lanes` that are blocked. Rays are consumed.
-    LaneMask occluded(RayPacket& rays, LaneMask lanes, const std::uint32_t (&seeds)[kLanes],
-                      bool coherent) const noexcept;
+    LaneMask occluded(RayPacket& rays, LaneMask lanes,
+                      const std::uint32_t (&seeds)[kLanes]) const noexcept;
 
     HitTarget target(const Hit& hit) const noexcept {
         const bool instanced = hit.inst != kNone;

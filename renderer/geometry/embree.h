@@ -1,5 +1,8 @@
 #pragma once
-// Embree 3 or 4 behind one face. Included by accel.cpp and replay.cpp only.
+// Embree 3 or 4 behind one face. Included by accel.cpp only.
+//
+// Packets are never flagged coherent: Embree 3.13's any-hit packets then read memory that nothing
+// wrote and may not come back (docs/decisions/002-no-coherent-packets.md).
 
 #if TESSERA_EMBREE >= 4
 #include <embree4/rtcore.h>
@@ -16,58 +19,48 @@ struct Context : RTCRayQueryContext {
     Context() { rtcInitRayQueryContext(this); }
 };
 struct IntersectArgs : RTCIntersectArguments {
-    IntersectArgs(Context& context, bool coherent) {
+    explicit IntersectArgs(Context& query) {
         rtcInitIntersectArguments(this);
-        this->context = &context;
-        flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+        context = &query;
     }
 };
 struct OccludedArgs : RTCOccludedArguments {
-    OccludedArgs(Context& context, bool coherent) {
+    explicit OccludedArgs(Context& query) {
         rtcInitOccludedArguments(this);
-        this->context = &context;
-        flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+        context = &query;
     }
 };
-inline void intersect16(const int* valid, RTCScene s, Context& c, RTCRayHit16* r, bool coherent) {
-    IntersectArgs args(c, coherent);
+inline void intersect16(const int* valid, RTCScene s, Context& c, RTCRayHit16* r) {
+    IntersectArgs args(c);
     rtcIntersect16(valid, s, r, &args);
 }
 inline void intersect1(RTCScene s, Context& c, RTCRayHit* r) {
-    IntersectArgs args(c, false);
+    IntersectArgs args(c);
     rtcIntersect1(s, r, &args);
 }
-inline void occluded16(const int* valid, RTCScene s, Context& c, RTCRay16* r, bool coherent) {
-    OccludedArgs args(c, coherent);
+inline void occluded16(const int* valid, RTCScene s, Context& c, RTCRay16* r) {
+    OccludedArgs args(c);
     rtcOccluded16(valid, s, r, &args);
 }
 inline void occluded1(RTCScene s, Context& c, RTCRay* r) {
-    OccludedArgs args(c, false);
+    OccludedArgs args(c);
     rtcOccluded1(s, r, &args);
-}
-inline Context* context_of(const RTCFilterFunctionNArguments* a) {
-    return static_cast<Context*>(a->context);
 }
 #else
 struct Context : RTCIntersectContext {
     Context() { rtcInitIntersectContext(this); }
 };
-inline RTCIntersectContextFlags coherence(bool coherent) {
-    return coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-}
-inline void intersect16(const int* valid, RTCScene s, Context& c, RTCRayHit16* r, bool coherent) {
-    c.flags = coherence(coherent);
+inline void intersect16(const int* valid, RTCScene s, Context& c, RTCRayHit16* r) {
     rtcIntersect16(valid, s, &c, r);
 }
 inline void intersect1(RTCScene s, Context& c, RTCRayHit* r) { rtcIntersect1(s, &c, r); }
-inline void occluded16(const int* valid, RTCScene s, Context& c, RTCRay16* r, bool coherent) {
-    c.flags = coherence(coherent);
+inline void occluded16(const int* valid, RTCScene s, Context& c, RTCRay16* r) {
     rtcOccluded16(valid, s, &c, r);
 }
 inline void occluded1(RTCScene s, Context& c, RTCRay* r) { rtcOccluded1(s, &c, r); }
+#endif
 inline Context* context_of(const RTCFilterFunctionNArguments* a) {
     return static_cast<Context*>(a->context);
 }
-#endif
 
 }  // namespace tessera::embree

@@ -99,8 +99,8 @@ private:
                 const int i = std::countr_zero(m);
                 packet_.ray.set(i, lanes_[i].ray);
             }
-            if (job_.log) job_.log->packet(packet_.ray, alive_, seeds_, false, true);
-            scene_.accel().intersect(packet_, alive_, seeds_, true);
+            if (job_.log) job_.log->packet(packet_.ray, alive_, seeds_, false);
+            scene_.accel().intersect(packet_, alive_, seeds_);
             for (LaneMask m = alive_; m != 0; m &= m - 1) {
                 const int i = std::countr_zero(m);
                 hits_[i] = packet_.hit(i);
@@ -128,12 +128,24 @@ private:
     }
 
     void draw_samples(std::uint32_t depth) noexcept {
-        if (scene_.lights().sampled())
-            sample_pairs(job_.seeds, job_.index, dim::vertex(depth, dim::kLight), light_u_);
-        sample_pairs(job_.seeds, job_.index, dim::vertex(depth, dim::kChoice), choice_u_);
-        sample_pairs(job_.seeds, job_.index, dim::vertex(depth, dim::kBsdf), bsdf_u_);
+        if (scene_.lights().sampled()) draw(dim::vertex(depth, dim::kLight), light_u_);
+        draw(dim::vertex(depth, dim::kChoice), choice_u_);
+        draw(dim::vertex(depth, dim::kBsdf), bsdf_u_);
         if (depth >= static_cast<std::uint32_t>(settings_.min_depth)) {
-            sample_pairs(job_.seeds, job_.index, dim::vertex(depth, dim::kRoulette), roulette_u_);
+            draw(dim::vertex(depth, dim::kRoulette), roulette_u_);
+        }
+    }
+
+    // All lanes at once are vectorised; a few alone are cheaper one by one. The points are the
+    // same.
+    void draw(std::uint32_t pair, SamplePairs& out) noexcept {
+        constexpr int kFew = 3;
+        if (std::popcount(alive_) > kFew) return sample_pairs(job_.seeds, job_.index, pair, out);
+        for (LaneMask m = alive_; m != 0; m &= m - 1) {
+            const int i = std::countr_zero(m);
+            const Vec2f p = sample_pair(job_.seeds[i], job_.index, pair);
+            out.x[i] = p.x;
+            out.y[i] = p.y;
         }
     }
 
@@ -226,8 +238,8 @@ private:
                 const int i = std::countr_zero(m);
                 rays.set(i, shadow_[i]);
             }
-            if (job_.log) job_.log->packet(rays, shadow_lanes_, seeds_, true, false);
-            blocked = scene_.accel().occluded(rays, shadow_lanes_, seeds_, false);
+            if (job_.log) job_.log->packet(rays, shadow_lanes_, seeds_, true);
+            blocked = scene_.accel().occluded(rays, shadow_lanes_, seeds_);
         } else {
             for (LaneMask m = shadow_lanes_; m != 0; m &= m - 1) {
                 const int i = std::countr_zero(m);

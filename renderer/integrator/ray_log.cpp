@@ -6,8 +6,8 @@
 namespace tessera {
 
 void RayLog::packet(const RayPacket& rays, LaneMask lanes, const std::uint32_t (&seeds)[kLanes],
-                    bool shadow, bool coherent) {
-    Packet p{rays, {}, lanes, shadow, coherent};
+                    bool shadow) {
+    Packet p{rays, {}, lanes, shadow};
     std::memcpy(p.seeds, seeds, sizeof seeds);
     packets_.push_back(p);
     order_.push_back(true);
@@ -29,11 +29,11 @@ std::uint64_t RayLog::replay(const Accel& accel) const {
             if (p.shadow) {
                 RayPacket rays = p.rays;
                 hits += static_cast<std::uint64_t>(
-                    std::popcount(accel.occluded(rays, p.lanes, p.seeds, p.coherent)));
+                    std::popcount(accel.occluded(rays, p.lanes, p.seeds)));
             } else {
                 HitPacket rays;
                 rays.ray = p.rays;
-                accel.intersect(rays, p.lanes, p.seeds, p.coherent);
+                accel.intersect(rays, p.lanes, p.seeds);
                 for (int i = 0; i < kLanes; ++i) hits += rays.geom[i] != kNone;
             }
         } else {

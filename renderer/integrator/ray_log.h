@@ -13,7 +13,7 @@ namespace tessera {
 class RayLog {
 public:
     void packet(const RayPacket& rays, LaneMask lanes, const std::uint32_t (&seeds)[kLanes],
-                bool shadow, bool coherent);
+                bool shadow);
     void single(const Ray& ray, std::uint32_t seed, bool shadow);
     std::uint64_t rays() const noexcept { return rays_; }
     /// Asks again; returns the number of hits, so that nothing is optimised away.
@@ -24,7 +24,7 @@ private:
         RayPacket rays;
         std::uint32_t seeds[kLanes];
         LaneMask lanes;
-        bool shadow, coherent;
+        bool shadow;
     };
     struct Single {
         Ray ray;

@@ -64,7 +64,8 @@ FacingFrame facing_frame(const SurfacePoint& s, const ShaderProgram& program, co
     if constexpr (F.textures || F.specular) {
         along = program.facts().tangent;
         if constexpr (F.textures) {
-            if (const auto mapped = program.normal(in, textures)) {
+            if (const auto mapped =
+                    program.has_normal_map() ? program.normal(in, textures) : std::nullopt) {
                 // The map lives in the frame of the unflipped normal.
                 const Frame base = frame_along(s.ns, s.dpdu);
                 const Vec3f m = normalize(base.to_world(*mapped));

@@ -97,8 +97,8 @@ private:
             packet_.ray.set(i, node_[i].ray);
             ++(node_[i].depth == 0 ? counters_.rays.camera : counters_.rays.bounce);
         }
-        if (job_.log) job_.log->packet(packet_.ray, alive_, seeds_, false, step == 0);
-        scene_.accel().intersect(packet_, alive_, seeds_, step == 0);
+        if (job_.log) job_.log->packet(packet_.ray, alive_, seeds_, false);
+        scene_.accel().intersect(packet_, alive_, seeds_);
     }
 
     // Emission, or the background; then the surface is made ready.
@@ -154,8 +154,8 @@ private:
         if (waiting == 0) return;
         counters_.rays.shadow += static_cast<std::uint64_t>(std::popcount(waiting));
         ray_seeds(2 * step + 1);
-        if (job_.log) job_.log->packet(shadow_, waiting, seeds_, true, false);
-        const LaneMask blocked = scene_.accel().occluded(shadow_, waiting, seeds_, false);
+        if (job_.log) job_.log->packet(shadow_, waiting, seeds_, true);
+        const LaneMask blocked = scene_.accel().occluded(shadow_, waiting, seeds_);
         for (LaneMask m = waiting & ~blocked; m != 0; m &= m - 1) {
             const int i = std::countr_zero(m);
             out_[i].radiance += pending_[i];

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "renderer/core/fast_math.h"
 #include "renderer/lights/light.h"
 
 namespace tessera {
@@ -13,24 +14,20 @@ double luminance_of(Color c) {
 
 }  // namespace
 
-// u = 0.5 looks along -z, u grows toward +x; v = 0 is +y.
+// u = 0.5 looks along -z, u grows toward +x; v = 0 is +y. d is a unit vector.
 Vec2f EnvironmentLight::to_uv(Vec3f d) const {
-    const Vec3f w{cos_rotate * d.x - sin_rotate * d.z, d.y, sin_rotate * d.x + cos_rotate * d.z};
-    const float u = 0.5f + std::atan2(w.x, -w.z) * (0.5f * kInvPi);
-    const float v = std::atan2(std::sqrt(w.x * w.x + w.z * w.z), w.y) * kInvPi;
-    return {u, v};
+    const float x = cos_rotate * d.x - sin_rotate * d.z, z = sin_rotate * d.x + cos_rotate * d.z;
+    return {0.5f + atan2_turn(x, -z), 2.0f * atan2_turn(std::sqrt(x * x + z * z), d.y)};
 }
 
 Vec3f EnvironmentLight::to_direction(Vec2f uv) const {
-    const float phi = (uv.x - 0.5f) * 2.0f * kPi, theta = uv.y * kPi;
-    const float r = std::sin(theta);
-    const Vec3f w{r * std::sin(phi), std::cos(theta), -r * std::cos(phi)};
+    const SinCos phi = sincos_turn(uv.x), theta = sincos_turn(0.5f * uv.y);
+    // phi is measured from u = 0, half a turn away from -z.
+    const Vec3f w{-theta.sin * phi.sin, theta.cos, theta.sin * phi.cos};
     return {cos_rotate * w.x + sin_rotate * w.z, w.y, -sin_rotate * w.x + cos_rotate * w.z};
 }
 
-Color EnvironmentLight::radiance(Vec3f d) const {
-    if (width == 0) return scale;
-    const Vec2f uv = to_uv(d);
+Color EnvironmentLight::texel(Vec2f uv) const {
     const float x = uv.x * static_cast<float>(width) - 0.5f,
                 y = uv.y * static_cast<float>(height) - 0.5f;
     const float fx = std::floor(x), fy = std::floor(y), tx = x - fx, ty = y - fy;
@@ -43,11 +40,14 @@ Color EnvironmentLight::radiance(Vec3f d) const {
     return lerp(lerp(r0[x0], r0[x1], tx), lerp(r1[x0], r1[x1], tx), ty) * scale;
 }
 
-float EnvironmentLight::pdf(Vec3f d) const {
-    if (width == 0) return 0.25f * kInvPi;
-    const Vec2f uv = to_uv(d);
-    const float sin_theta = std::sin(uv.y * kPi);
+float EnvironmentLight::density(Vec2f uv, float sin_theta) const {
     return sin_theta > 0.0f ? table.pdf(uv) / (2.0f * kPi * kPi * sin_theta) : 0.0f;
+}
+
+EnvironmentLight::Look EnvironmentLight::look(Vec3f d) const {
+    if (width == 0) return {scale, 0.25f * kInvPi};
+    const Vec2f uv = to_uv(d);
+    return {texel(uv), density(uv, std::sqrt(d.x * d.x + d.z * d.z))};
 }
 
 EnvironmentLight make_constant_environment(Color radiance, bool camera_visible) {

@@ -146,10 +146,10 @@ bool sample(const EnvironmentLight& l, const LightReference&, Vec2f u, LightSamp
     }
     const Distribution2D::Sample t = l.table.sample(u);
     s.wi = l.to_direction(t.uv);
-    const float sin_theta = std::sin(t.uv.y * kPi);
+    const float sin_theta = std::sqrt(s.wi.x * s.wi.x + s.wi.z * s.wi.z);
     if (!(sin_theta > 0.0f)) return false;
     s.pdf = t.pdf / (2.0f * kPi * kPi * sin_theta);
-    s.radiance = l.radiance(s.wi);
+    s.radiance = l.texel(t.uv);
     return s.pdf > 0.0f;
 }
 

@@ -98,10 +98,15 @@ struct EnvironmentLight {
     Distribution2D table;
     bool camera_visible = true;
 
-    Color radiance(Vec3f d) const;
-    float pdf(Vec3f d) const;
+    struct Look {
+        Color radiance;
+        float pdf;  // per solid angle, of sampling the table
+    };
+    Look look(Vec3f d) const;
     Vec2f to_uv(Vec3f d) const;
     Vec3f to_direction(Vec2f uv) const;
+    Color texel(Vec2f uv) const;  // bilinear, scaled
+    float density(Vec2f uv, float sin_theta) const;
 };
 
 using Light = std::variant<PointLight, SpotLight, DistantLight, QuadLight, DiscLight, SphereLight,

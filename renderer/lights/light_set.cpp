@@ -26,7 +26,8 @@ struct Seen {
 Seen seen_along(const Light& light, Vec3f d, bool camera) {
     if (const auto* e = std::get_if<EnvironmentLight>(&light)) {
         if (camera && !e->camera_visible) return {};
-        return {e->radiance(d), e->pdf(d)};
+        const EnvironmentLight::Look look = e->look(d);
+        return {look.radiance, look.pdf};
     }
     const auto& l = std::get<DistantLight>(light);
     if (camera && !l.camera_visible) return {};

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kPiD = 3.14159265358979323846;
 
-// Red of every pixel over `seeds` renders of an 8x8 picture; pixels of one seed are stratified apart, so that their
-// means are independent.
+// Red of every pixel over `seeds` renders of an 8x8 picture; pixels of one seed are stratified
+// apart, so that their means are independent.
 Mean measured(const SceneDesc& scene, int spp, int seeds = 8) {
     Mean mean;
     for (int seed = 0; seed < seeds; ++seed) {
@@ -121,7 +121,8 @@ TEST_CASE("matte floor: quad light and emissive mesh give what Lambert's formula
     check_radiance(quad, 32, 0.6 / kPiD * irradiance);
 
     SceneDesc mesh = matte_floor(0.6f);
-    add_mesh(mesh, quad_mesh({{-1, h, -1}, {1, h, -1}, {1, h, 1}, {-1, h, 1}}, add(mesh, glowing(5))));
+    add_mesh(mesh,
+             quad_mesh({{-1, h, -1}, {1, h, -1}, {1, h, 1}, {-1, h, 1}}, add(mesh, glowing(5))));
     check_radiance(mesh, 64, 0.6 / kPiD * irradiance);
 }
 
@@ -177,7 +178,8 @@ TEST_CASE("whitted: a mirror shows the sky, a matte floor gets light by its cosi
     check_radiance(lit, 1, 0.5 / kPiD * 6 / 5 * 2 / std::sqrt(5));
 }
 
-TEST_CASE("alpha cut-outs: half opacity lets half of the light through, to the eye and in shadows") {
+TEST_CASE(
+    "alpha cut-outs: half opacity lets half of the light through, to the eye and in shadows") {
     SceneDesc seen;
     MaterialDesc card = matte(0);
     card.geometry_opacity.value = 0.5f;

@@ -13,14 +13,16 @@ namespace {
 
 Vec3f seen_at(float cosine) { return {safe_sqrt(1 - cosine * cosine), 0, cosine}; }
 
-// Energy sent to all directions from wo: radiance's 1/eta^2 at a boundary is taken back. Error below 1e-3: 2^13
-// stratified points of weights between zero and one.
+// Energy sent to all directions from wo: radiance's 1/eta^2 at a boundary is taken back. Error
+// below 1e-3: 2^13 stratified points of weights between zero and one.
 double albedo_of(const LobeList& lobes, Vec3f wo) {
     constexpr std::uint32_t kPoints = 1u << 13;
     double sum = 0;
     for (std::uint32_t i = 0; i < kPoints; ++i) {
         const auto s = lobes.sample(wo, sample_pair(77, i, 0), sample_pair(77, i, 1).x);
-        if (s) sum += static_cast<double>(max_component(s->weight)) * static_cast<double>(s->eta) * static_cast<double>(s->eta);
+        if (s)
+            sum += static_cast<double>(max_component(s->weight)) * static_cast<double>(s->eta) *
+                   static_cast<double>(s->eta);
     }
     return sum / kPoints;
 }
@@ -30,8 +32,11 @@ struct FurnaceCase {
     float cosine;
     bool front;
     std::string name() const {
-        return fmt::format("metalness {} specular_weight {} roughness {} transmission {} ior {} thin {} cosine {} {}", p.base_metalness, p.specular_weight,
-                           p.specular_roughness, p.transmission_weight, p.specular_ior, p.thin_walled, cosine, front ? "front" : "back");
+        return fmt::format(
+            "metalness {} specular_weight {} roughness {} transmission {} ior {} thin {} cosine {} "
+            "{}",
+            p.base_metalness, p.specular_weight, p.specular_roughness, p.transmission_weight,
+            p.specular_ior, p.thin_walled, cosine, front ? "front" : "back");
     }
 };
 
@@ -44,7 +49,9 @@ std::vector<FurnaceCase> all_surfaces() {
                     for (const float ior : {1.0f, 1.2f, 1.5f, 2.5f}) {
                         for (const float cosine : {1.0f, 0.7f, 0.3f, 0.05f}) {
                             for (const int side : {0, 1, 2}) {
-                                if (metalness == 1.0f && (transmission > 0.0f || ior != 1.5f || side > 0)) continue;
+                                if (metalness == 1.0f &&
+                                    (transmission > 0.0f || ior != 1.5f || side > 0))
+                                    continue;
                                 SurfaceParams p;
                                 p.base_color = Color(1.0f);
                                 p.base_metalness = metalness;
@@ -67,12 +74,15 @@ std::vector<FurnaceCase> all_surfaces() {
 }  // namespace
 
 TEST_CASE("furnace: no surface of openpbr gives back more light than it gets") {
-    // Layered bases get what a coarse table lets through: at grazing angles on nearly smooth boundaries it is up to
-    // 0.02 off. Everything else keeps to 1e-3.
+    // Layered bases get what a coarse table lets through: at grazing angles on nearly smooth
+    // boundaries it is up to 0.02 off. Everything else keeps to 1e-3.
     const auto check = [](const FurnaceCase& c) -> std::string {
         const bool layered = c.p.base_metalness < 1.0f && c.p.transmission_weight < 1.0f;
-        const double albedo = albedo_of(openpbr_lobes(c.p, seen_at(c.cosine), c.front), seen_at(c.cosine));
-        return albedo <= 1 + (layered ? 0.025 : 0.001) ? "" : fmt::format("{}: {:.5f}", c.name(), albedo);
+        const double albedo =
+            albedo_of(openpbr_lobes(c.p, seen_at(c.cosine), c.front), seen_at(c.cosine));
+        return albedo <= 1 + (layered ? 0.025 : 0.001)
+                   ? ""
+                   : fmt::format("{}: {:.5f}", c.name(), albedo);
     };
     CHECK(failures_of(all_surfaces(), check) == "");
 }
@@ -82,24 +92,29 @@ TEST_CASE("furnace: white Lambert, smooth glass and a perfect mirror give back e
         SurfaceParams p;
         p.base_color = Color(1.0f);
         p.specular_weight = 0;
-        CHECK(albedo_of(openpbr_lobes(p, seen_at(cosine), true), seen_at(cosine)) == doctest::Approx(1).epsilon(1e-6));
+        CHECK(albedo_of(openpbr_lobes(p, seen_at(cosine), true), seen_at(cosine)) ==
+              doctest::Approx(1).epsilon(1e-6));
         p.specular_weight = 1;
         p.specular_roughness = 0;
         p.base_metalness = 1;
-        CHECK(albedo_of(openpbr_lobes(p, seen_at(cosine), true), seen_at(cosine)) == doctest::Approx(1).epsilon(1e-6));
+        CHECK(albedo_of(openpbr_lobes(p, seen_at(cosine), true), seen_at(cosine)) ==
+              doctest::Approx(1).epsilon(1e-6));
         p.base_metalness = 0;
         p.transmission_weight = 1;
         for (const bool front : {true, false}) {
-            CHECK(albedo_of(openpbr_lobes(p, seen_at(cosine), front), seen_at(cosine)) == doctest::Approx(1).epsilon(1e-6));
+            CHECK(albedo_of(openpbr_lobes(p, seen_at(cosine), front), seen_at(cosine)) ==
+                  doctest::Approx(1).epsilon(1e-6));
         }
         // A smooth layered plastic: boundary and base share without loss.
         p.transmission_weight = 0;
-        CHECK(albedo_of(openpbr_lobes(p, seen_at(cosine), true), seen_at(cosine)) == doctest::Approx(1).epsilon(2e-3));
+        CHECK(albedo_of(openpbr_lobes(p, seen_at(cosine), true), seen_at(cosine)) ==
+              doctest::Approx(1).epsilon(2e-3));
     }
 }
 
 TEST_CASE("furnace: what a rough surface loses to single scattering is bounded") {
-    // Regression bounds, a few hundredths below what this model gives: a lost factor would show as far more.
+    // Regression bounds, a few hundredths below what this model gives: a lost factor would show as
+    // far more.
     for (const float roughness : {0.1f, 0.4f, 0.7f, 1.0f}) {
         SurfaceParams p;
         p.base_color = Color(1.0f);
@@ -122,13 +137,18 @@ TEST_CASE("energy: the table agrees with fine quadrature to 0.01 where cells are
     Vec2f u;
     for (std::uint32_t i = 0; i < 300; ++i) {
         u = sample_pair(3, i, 0);
-        // Indices of materials; beyond 89 degrees and below an index of 1.05 Fresnel is steeper than the cells.
-        points.push_back({std::fmax(i % 2 ? u.x : u.x * u.x, 0.02f), u.y, 1.05f + 2.0f * sample_pair(3, i, 1).x});
+        // Indices of materials; beyond 89 degrees and below an index of 1.05 Fresnel is steeper
+        // than the cells.
+        points.push_back({std::fmax(i % 2 ? u.x : u.x * u.x, 0.02f), u.y,
+                          1.05f + 2.0f * sample_pair(3, i, 1).x});
     }
     const auto check = [](const At& a) -> std::string {
         const float fine = dielectric_reflection_albedo_quadrature(a.cosine, a.alpha, a.eta, 200);
         const float table = dielectric_reflection_albedo(a.cosine, a.alpha, a.eta);
-        return std::fabs(fine - table) < 0.01f ? "" : fmt::format("cos {} alpha {} eta {}: table {} quadrature {}", a.cosine, a.alpha, a.eta, table, fine);
+        return std::fabs(fine - table) < 0.01f
+                   ? ""
+                   : fmt::format("cos {} alpha {} eta {}: table {} quadrature {}", a.cosine,
+                                 a.alpha, a.eta, table, fine);
     };
     CHECK(failures_of(points, check) == "");
 }

@@ -154,7 +154,7 @@ TEST_CASE("environment: irradiance is the integral of its look-ups") {
                 const Vec3d w{std::sin(theta) * std::cos(phi), std::cos(theta),
                               std::sin(theta) * std::sin(phi)};
                 expected += std::max(0.0, dot(w, normal)) *
-                            static_cast<double>(sky.radiance(Vec3f(w)).x) * std::sin(theta);
+                            static_cast<double>(sky.look(Vec3f(w)).radiance.x) * std::sin(theta);
             }
         }
         expected *= kPiD * kPiD / kSteps / kSteps;

@@ -23,7 +23,7 @@ struct LightCase {
     Vec3f ref;
     Vec3d axis;                        // toward the light
     std::function<double(Vec3d)> pdf;  // what light_pdf says of the points along a direction
-    Vec3d across{0, 0, 0};             // flat lights: a pole beside which they are a patch, not a ring
+    Vec3d across{0, 0, 0};  // flat lights: a pole beside which they are a patch, not a ring
 };
 
 double claimed(const Light& light, Vec3f ref, Vec3d w, double t, Vec3d n,
@@ -50,7 +50,8 @@ LightCase quad_case(std::string name, const QuadLight& q, Vec3f ref) {
 }
 
 LightCase disc_case(std::string name, const DiscLight& l, Vec3f ref) {
-    LightCase c{std::move(name), std::make_shared<Light>(l), ref, Vec3d(l.center - ref), {}, Vec3d(l.normal)};
+    LightCase c{std::move(name), std::make_shared<Light>(l), ref, Vec3d(l.center - ref), {},
+                Vec3d(l.normal)};
     c.pdf = [l, ref, light = c.light](Vec3d w) {
         const Vec3d n(l.normal);
         const double t = dot(Vec3d(l.center - ref), n) / dot(w, n);
@@ -130,7 +131,7 @@ LightCase mesh_case(std::string name, Vec3f ref) {
 LightCase sky_case(std::string name, const EnvironmentLight& e, Vec3d axis) {
     LightCase c{std::move(name), std::make_shared<Light>(e), {}, axis, {}};
     c.pdf = [light = c.light](Vec3d w) {
-        return static_cast<double>(std::get<EnvironmentLight>(*light).pdf(Vec3f(w)));
+        return static_cast<double>(std::get<EnvironmentLight>(*light).look(Vec3f(w)).pdf);
     };
     return c;
 }
@@ -200,7 +201,8 @@ std::vector<LightCase> all_lights() {
 std::string chi_square_failure(const LightCase& c, double level) {
     SphereTest test;
     const Vec3d toward = normalize(c.axis), pole = c.across - toward * dot(c.across, toward);
-    test.charts = {length2(pole) > 0 ? SphereChart{pole, false, toward} : SphereChart{c.axis, false, {}}};
+    test.charts = {length2(pole) > 0 ? SphereChart{pole, false, toward}
+                                     : SphereChart{c.axis, false, {}}};
     test.seed = 99;
     const SphereTestResult r = sphere_chi_square_above(
         level, test,

@@ -23,7 +23,9 @@ namespace tessera {
 struct SphereChart {
     Vec3d axis{0, 0, 1};
     bool hemisphere = false;
-    Vec3d middle{0, 0, 0};  // where sectors have angle 0: keeps a small target clear of the seam; zero: anywhere
+    Vec3d middle{
+        0, 0,
+        0};  // where sectors have angle 0: keeps a small target clear of the seam; zero: anywhere
     bool holds(Vec3d w) const { return !hemisphere || dot(axis, w) > 0; }
     double end() const { return hemisphere ? 1.57079632679489662 : 3.14159265358979324; }
 };
@@ -54,8 +56,9 @@ class Axis {
 public:
     explicit Axis(const SphereChart& chart) : n_(normalize(chart.axis)) {
         const Vec3d along = chart.middle - n_ * dot(n_, chart.middle);
-        s_ = length2(along) > 0 ? normalize(along)
-                                : normalize(cross(std::fabs(n_.z) < 0.99 ? Vec3d{0, 0, 1} : Vec3d{1, 0, 0}, n_));
+        s_ = length2(along) > 0
+                 ? normalize(along)
+                 : normalize(cross(std::fabs(n_.z) < 0.99 ? Vec3d{0, 0, 1} : Vec3d{1, 0, 0}, n_));
         t_ = cross(n_, s_);
     }
     Polar polar(Vec3d w) const {
@@ -286,10 +289,12 @@ SphereTestResult sphere_chi_square(const SphereTest& test, const Sample& sample,
     return result;
 }
 
-/// The same; where p is not above level once more with finer quadrature and the same numbers: the density may have an
-/// edge that the coarse one missed. Finer quadrature only comes nearer to the truth.
+/// The same; where p is not above level once more with finer quadrature and the same numbers: the
+/// density may have an edge that the coarse one missed. Finer quadrature only comes nearer to the
+/// truth.
 template <class Sample, class Pdf>
-SphereTestResult sphere_chi_square_above(double level, SphereTest test, const Sample& sample, const Pdf& pdf) {
+SphereTestResult sphere_chi_square_above(double level, SphereTest test, const Sample& sample,
+                                         const Pdf& pdf) {
     const SphereTestResult coarse = sphere_chi_square(test, sample, pdf);
     if (coarse.p > level && std::fabs(coarse.integral + coarse.failed - 1) < 1e-3) return coarse;
     test.min_depth += 2;
