@@ -10,13 +10,13 @@
 namespace tessera {
 namespace {
 
-constexpr int kMu = 24, kAlpha = 16, kEta = 12;
+constexpr int kMu = 32, kAlpha = 32, kEta = 16;
 
 // The axes are bent so that cells are small where the albedo curves: near grazing, near smooth,
 // near eta = 1.
 float mu_at(float x) { return std::max(x * x, 1e-4f); }
 float alpha_at(float x) { return x * x; }
-float eta_at(float x) { return 1.0f + 3.0f * x * x; }
+float eta_at(float x) { return 1.0f + 3.0f * x * x * x; }
 
 struct Table {
     std::array<float, kMu * kAlpha * kEta> values;
@@ -69,7 +69,7 @@ float dielectric_reflection_albedo_quadrature(float cos_o, float alpha, float et
 float dielectric_reflection_albedo(float cos_o, float alpha, float eta) noexcept {
     static const Table table;
     const Cell m = cell(safe_sqrt(cos_o), kMu), a = cell(safe_sqrt(alpha), kAlpha),
-               e = cell(safe_sqrt((eta - 1.0f) * (1.0f / 3.0f)), kEta);
+               e = cell(std::cbrt(std::max(eta - 1.0f, 0.0f) * (1.0f / 3.0f)), kEta);
     float sum = 0;
     for (int corner = 0; corner < 8; ++corner) {
         const int dm = corner & 1, da = (corner >> 1) & 1, de = corner >> 2;
@@ -80,10 +80,9 @@ float dielectric_reflection_albedo(float cos_o, float alpha, float eta) noexcept
 }
 
 ReflectionAlbedoCurve::ReflectionAlbedoCurve(float alpha, float eta) {
-    static_assert(kCells == kMu);  // the same cells, so that curve and table agree
     for (int i = 0; i < kCells; ++i) {
-        const float x = static_cast<float>(i) / (kCells - 1);
-        values_[i] = dielectric_reflection_albedo(x * x, alpha, eta);
+        const float mu = mu_at(static_cast<float>(i) / (kCells - 1));
+        values_[i] = dielectric_reflection_albedo_quadrature(mu, alpha, eta, 24);
     }
 }
 

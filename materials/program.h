@@ -51,6 +51,8 @@ public:
     Color mean_emission(const TextureStore* store) const noexcept;
     /// 1: light stops here.
     float opacity(Vec2f uv, const TextureStore* store) const noexcept;
+    /// The constant that the opacity's texture is multiplied by.
+    float opacity_factor() const noexcept { return m_.geometry_opacity.value; }
     bool has_normal_map() const noexcept { return m_.geometry_normal >= 0; }
     /// Normal in the tangent frame from the normal map; none if there is no map.
     std::optional<Vec3f> normal(const ShadeInput& in, const TextureStore* store) const noexcept;

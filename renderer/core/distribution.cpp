@@ -31,9 +31,20 @@ struct Inverted {
     float density;   // share of the cell times the number of cells
 };
 
-Inverted invert(const float* cdf, int n, float u) {
-    const int i =
-        std::clamp(static_cast<int>(std::upper_bound(cdf, cdf + n + 1, u) - cdf) - 1, 0, n - 1);
+// For each n-th of the unit interval, the cell in which it starts.
+void make_guide(const float* cdf, int n, std::int32_t* guide) {
+    int i = 0;
+    for (int k = 0; k < n; ++k) {
+        const float u = static_cast<float>(k) / static_cast<float>(n);
+        while (i < n - 1 && cdf[i + 1] <= u) ++i;
+        guide[k] = i;
+    }
+}
+
+Inverted invert(const float* cdf, const std::int32_t* guide, int n, float u) {
+    int i = guide[std::min(static_cast<int>(u * static_cast<float>(n)), n - 1)];
+    while (i > 0 && cdf[i] > u) --i;  // rounding of the product
+    while (i < n - 1 && cdf[i + 1] <= u) ++i;
     const float share = cdf[i + 1] - cdf[i];
     const float position = share > 0.0f ? (u - cdf[i]) / share : 0.5f;
     return {i, std::min(position, 0x1.fffffep-1f), share * static_cast<float>(n)};
@@ -41,7 +52,8 @@ Inverted invert(const float* cdf, int n, float u) {
 
 }  // namespace
 
-AliasTable::AliasTable(std::span<const double> weights) : cells_(weights.size()) {
+AliasTable::AliasTable(std::span<const double> weights)
+    : cells_(weights.size()), count_(static_cast<float>(weights.size())) {
     const std::size_t n = weights.size();
     double sum = 0;
     for (double w : weights) sum += sane(w);
@@ -70,30 +82,36 @@ AliasTable::AliasTable(std::span<const double> weights) : cells_(weights.size())
 }
 
 AliasTable::Pick AliasTable::sample(float u) const noexcept {
-    const int n = static_cast<int>(cells_.size());
-    const float scaled = u * static_cast<float>(n);
-    const int i = std::min(static_cast<int>(scaled), n - 1);
+    const float scaled = u * count_;
+    const auto i = static_cast<std::uint32_t>(static_cast<int>(std::min(scaled, count_ - 1.0f)));
     const float within = std::min(scaled - static_cast<float>(i), 0x1.fffffep-1f);
     const Cell& cell = cells_[i];
-    if (within < cell.keep)
-        return {static_cast<std::size_t>(i), cell.probability, within / cell.keep};
+    if (within < cell.keep) return {i, cell.probability, within / cell.keep};
     const float rest = (within - cell.keep) / (1.0f - cell.keep);
     return {cell.alias, cells_[cell.alias].probability, std::min(rest, 0x1.fffffep-1f)};
 }
 
 Distribution2D::Distribution2D(int width, int height, std::span<const double> weights)
-    : width_(width), height_(height), rows_(height + 1), cells_(std::size_t(width + 1) * height) {
+    : width_(width),
+      height_(height),
+      rows_(height + 1),
+      cells_(std::size_t(width + 1) * height),
+      row_guide_(height),
+      cell_guide_(std::size_t(width) * height) {
     std::vector<double> row_sums(height);
     for (int y = 0; y < height; ++y) {
-        row_sums[y] = cumulate(weights.subspan(std::size_t(y) * width, width),
-                               &cells_[std::size_t(y) * (width + 1)]);
+        float* row = &cells_[std::size_t(y) * (width + 1)];
+        row_sums[y] = cumulate(weights.subspan(std::size_t(y) * width, width), row);
+        make_guide(row, width, &cell_guide_[std::size_t(y) * width]);
     }
     mean_ = cumulate(row_sums, rows_.data()) / (static_cast<double>(width) * height);
+    make_guide(rows_.data(), height, row_guide_.data());
 }
 
 Distribution2D::Sample Distribution2D::sample(Vec2f u) const noexcept {
-    const Inverted y = invert(rows_.data(), height_, u.y);
-    const Inverted x = invert(&cells_[std::size_t(y.index) * (width_ + 1)], width_, u.x);
+    const Inverted y = invert(rows_.data(), row_guide_.data(), height_, u.y);
+    const Inverted x = invert(&cells_[std::size_t(y.index) * (width_ + 1)],
+                              &cell_guide_[std::size_t(y.index) * width_], width_, u.x);
     return {{(static_cast<float>(x.index) + x.position) / static_cast<float>(width_),
              (static_cast<float>(y.index) + y.position) / static_cast<float>(height_)},
             x.density * y.density};

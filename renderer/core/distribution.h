@@ -37,6 +37,7 @@ private:
         float probability = 0;
     };
     std::vector<Cell> cells_;
+    float count_ = 0;  // of cells, as sample() wants it
 };
 
 /// A density over the unit square from a width x height table of weights, sampled by inversion
@@ -63,6 +64,9 @@ private:
     double mean_ = 0;
     std::vector<float> rows_;   // height_ + 1 cumulative
     std::vector<float> cells_;  // per row width_ + 1 cumulative
+    // Where the search in a cumulative starts for each n-th of u. Chen & Asau, "On Generating
+    // Random Variates from an Empirical Distribution", AIIE Transactions 6(2), 1974.
+    std::vector<std::int32_t> row_guide_, cell_guide_;
 };
 
 }  // namespace tessera

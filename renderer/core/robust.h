@@ -2,7 +2,7 @@
 // Rays that leave a surface without hitting it: the origin is moved by a bound on the rounding
 // error. Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., section 6.8; the bounds
 // there cover the position. kSafety widens them for the rounding inside Embree's robust triangle
-// test and its instance transform (measured by the self-hit test in tests/stats).
+// test and its instance transform (measured by tests/unit/self_hit_test.cpp).
 
 #include <bit>
 #include <cmath>

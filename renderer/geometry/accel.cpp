@@ -119,6 +119,11 @@ struct Accel::Impl {
         rtcReleaseGeometry(g);
     }
 
+    static void test_opacity(RTCGeometry g) {
+        rtcSetGeometryIntersectFilterFunction(g, filter_opacity);
+        rtcSetGeometryOccludedFilterFunction(g, filter_opacity);
+    }
+
     RTCGeometry mesh_part(const Mesh& mesh, const MeshPart& part) const {
         RTCGeometry g = rtcNewGeometry(
             device, part.quads ? RTC_GEOMETRY_TYPE_QUAD : RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -130,10 +135,7 @@ struct Accel::Impl {
             g, RTC_BUFFER_TYPE_INDEX, 0, part.quads ? RTC_FORMAT_UINT4 : RTC_FORMAT_UINT3,
             mesh.position_index.data(), mesh.corner(part.first_face) * sizeof(std::uint32_t),
             corners * sizeof(std::uint32_t), part.faces);
-        if (part.cutout) {
-            rtcSetGeometryIntersectFilterFunction(g, filter_opacity);
-            rtcSetGeometryOccludedFilterFunction(g, filter_opacity);
-        }
+        if (part.cutout) test_opacity(g);
         return g;
     }
 
@@ -142,6 +144,7 @@ struct Accel::Impl {
         auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(
             g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), 1));
         if (v) v[0] = s.center.x, v[1] = s.center.y, v[2] = s.center.z, v[3] = s.radius;
+        if (s.cutout) test_opacity(g);
         return g;
     }
 
@@ -153,6 +156,7 @@ struct Accel::Impl {
             g, RTC_BUFFER_TYPE_NORMAL, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 1));
         if (v) v[0] = d.center.x, v[1] = d.center.y, v[2] = d.center.z, v[3] = d.radius;
         if (n) n[0] = d.normal.x, n[1] = d.normal.y, n[2] = d.normal.z;
+        if (d.cutout) test_opacity(g);
         return g;
     }
 

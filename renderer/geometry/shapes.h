@@ -47,6 +47,7 @@ struct Sphere {
     Vec3f center;
     float radius = 1;
     std::int32_t material = -1;
+    bool cutout = false;  // as MeshPart's
 };
 
 struct Disc {
@@ -54,6 +55,7 @@ struct Disc {
     Vec3f normal;  // unit
     float radius = 1;
     std::int32_t material = -1;
+    bool cutout = false;
 };
 
 enum class PlacedKind : std::uint8_t { mesh, sphere, disc };

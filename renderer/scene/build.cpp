@@ -149,48 +149,76 @@ private:
     }
 
     void place_shape(const FlatInstance& i, ShapeUse& use, Placement& placed) {
-        Geometry& g = scene_->geometry_;
         const Affined to_scene = translation(-scene_->origin_) * i.to_world;
-        placed.kind = i.kind == ShapeKind::mesh
-                          ? PlacedKind::mesh
-                          : (i.kind == ShapeKind::sphere ? PlacedKind::sphere : PlacedKind::disc);
-        // Spheres and discs keep their form only under similarities; any other map goes through an
-        // instance.
-        placed.instanced = use.count > 1 && i.kind == ShapeKind::mesh;
-        if (i.kind != ShapeKind::mesh) placed.instanced = !is_similarity(i.to_world);
-        if (i.kind == ShapeKind::mesh) {
-            if (use.shape < 0) {
-                const Vec3d own_origin =
-                    placed.instanced ? mesh_center(desc_.meshes[i.index]) : Vec3d{};
-                use.own_origin = own_origin;
-                use.shape =
-                    bake(i.index, placed.instanced ? translation(-own_origin) : to_scene, use);
-            }
-            placed.shape = static_cast<std::uint32_t>(use.shape);
-            if (placed.instanced) placed.instance_at(to_scene * translation(use.own_origin));
-        } else if (i.kind == ShapeKind::sphere) {
-            const SphereDesc& s = desc_.spheres[i.index];
-            g.spheres.push_back(placed.instanced
-                                    ? Sphere{{0, 0, 0}, static_cast<float>(s.radius), s.material}
-                                    : Sphere{Vec3f(to_scene.point(Vec3d(s.center))),
-                                             static_cast<float>(s.radius * length(i.to_world.x)),
-                                             s.material});
-            if (placed.instanced) placed.instance_at(to_scene * translation(Vec3d(s.center)));
-            if (g.spheres.back().material < 0) g.spheres.back().material = default_material();
-            placed.shape = static_cast<std::uint32_t>(g.spheres.size() - 1);
-        } else {
-            const DiscDesc& d = desc_.discs[i.index];
-            const Vec3d n = normalize(Vec3d(d.normal));
-            g.discs.push_back(
-                placed.instanced
-                    ? Disc{{0, 0, 0}, Vec3f(n), static_cast<float>(d.radius), d.material}
-                    : Disc{Vec3f(to_scene.point(Vec3d(d.center))),
-                           Vec3f(normalize(to_scene.normal(n))),
-                           static_cast<float>(d.radius * length(i.to_world.x)), d.material});
-            if (placed.instanced) placed.instance_at(to_scene * translation(Vec3d(d.center)));
-            if (g.discs.back().material < 0) g.discs.back().material = default_material();
-            placed.shape = static_cast<std::uint32_t>(g.discs.size() - 1);
+        switch (i.kind) {
+            case ShapeKind::mesh:
+                return place_mesh(i, to_scene, use, placed);
+            case ShapeKind::sphere:
+                return place_sphere(i, to_scene, placed);
+            case ShapeKind::disc:
+                return place_disc(i, to_scene, placed);
+            case ShapeKind::group:
+                return;  // flattened
         }
+    }
+
+    void place_mesh(const FlatInstance& i, const Affined& to_scene, ShapeUse& use,
+                    Placement& placed) {
+        placed.kind = PlacedKind::mesh;
+        const bool instanced = use.count > 1;
+        if (use.shape < 0) {
+            if (instanced) use.own_origin = mesh_center(desc_.meshes[i.index]);
+            use.shape = bake(i.index, instanced ? translation(-use.own_origin) : to_scene, use);
+        }
+        placed.shape = static_cast<std::uint32_t>(use.shape);
+        if (instanced) placed.instance_at(to_scene * translation(use.own_origin));
+    }
+
+    // Spheres and discs keep their form only under similarities; any other map goes through an
+    // instance of the shape at its own origin.
+    void place_sphere(const FlatInstance& i, const Affined& to_scene, Placement& placed) {
+        const SphereDesc& desc = desc_.spheres[i.index];
+        Sphere s;
+        s.radius = static_cast<float>(desc.radius);
+        s.material = desc.material < 0 ? default_material() : desc.material;
+        if (is_similarity(to_scene)) {
+            s.center = Vec3f(to_scene.point(Vec3d(desc.center)));
+            s.radius = static_cast<float>(desc.radius * length(to_scene.x));
+        } else {
+            placed.instance_at(to_scene * translation(Vec3d(desc.center)));
+        }
+        s.cutout = quadric_cutout(i, s.material, desc.loc);
+        placed.kind = PlacedKind::sphere;
+        placed.shape = static_cast<std::uint32_t>(scene_->geometry_.spheres.size());
+        scene_->geometry_.spheres.push_back(s);
+    }
+
+    void place_disc(const FlatInstance& i, const Affined& to_scene, Placement& placed) {
+        const DiscDesc& desc = desc_.discs[i.index];
+        Disc d;
+        d.radius = static_cast<float>(desc.radius);
+        d.normal = Vec3f(normalize(Vec3d(desc.normal)));
+        d.material = desc.material < 0 ? default_material() : desc.material;
+        if (is_similarity(to_scene)) {
+            d.center = Vec3f(to_scene.point(Vec3d(desc.center)));
+            d.normal = Vec3f(normalize(to_scene.normal(Vec3d(desc.normal))));
+            d.radius = static_cast<float>(desc.radius * length(to_scene.x));
+        } else {
+            placed.instance_at(to_scene * translation(Vec3d(desc.center)));
+        }
+        d.cutout = quadric_cutout(i, d.material, desc.loc);
+        placed.kind = PlacedKind::disc;
+        placed.shape = static_cast<std::uint32_t>(scene_->geometry_.discs.size());
+        scene_->geometry_.discs.push_back(d);
+    }
+
+    bool quadric_cutout(const FlatInstance& i, int own_material, const SourceLoc& loc) {
+        const ProgramFacts& f = facts(i.material >= 0 ? i.material : own_material);
+        if (f.opacity_textured)
+            problems_.warn(loc,
+                           "spheres and discs take a constant opacity, the texture of "
+                           "geometry_opacity is ignored");
+        return f.cutout;
     }
 
     int bake(int index, const Affined& place, const ShapeUse& use) {

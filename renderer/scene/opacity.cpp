@@ -10,15 +10,23 @@ bool opacity_stops(const void* opaque_scene, const Hit& hit, std::uint32_t seed)
     const Geometry& g = scene.geometry();
     const HitTarget target = scene.accel().target(hit);
     const Placement& placed = g.placements[target.placement];
-    const Mesh& mesh = g.meshes[placed.shape];  // only meshes have cut-out parts
-    const std::uint32_t face = mesh.parts[target.part].first_face + hit.prim;
-    const int material =
-        placed.material >= 0 ? placed.material : mesh.materials[mesh.material_slot(face)];
+    std::int32_t material = placed.material;
+    std::uint32_t face = 0;
+    Vec2f uv;
+    if (placed.kind == PlacedKind::mesh) {
+        const Mesh& mesh = g.meshes[placed.shape];
+        face = mesh.parts[target.part].first_face + hit.prim;
+        if (material < 0) material = mesh.materials[mesh.material_slot(face)];
+        if (scene.program(material).facts().opacity_textured)
+            uv = surface_uv(mesh, face, hit.u, hit.v);
+    } else if (material < 0) {
+        material = placed.kind == PlacedKind::sphere ? g.spheres[placed.shape].material
+                                                     : g.discs[placed.shape].material;
+    }
     const ShaderProgram& program = scene.program(material);
     if (!program.facts().cutout) return true;
-    const Vec2f uv =
-        program.facts().opacity_textured ? surface_uv(mesh, face, hit.u, hit.v) : Vec2f{};
-    const float opacity = program.opacity(uv, scene.textures());
+    const float opacity = placed.kind == PlacedKind::mesh ? program.opacity(uv, scene.textures())
+                                                          : program.opacity_factor();
     if (opacity >= 1.0f) return true;
     if (opacity <= 0.0f) return false;
     const std::uint32_t h = hash_combine(hash_combine(seed, face), target.placement + 0x51ed270bu);

@@ -74,15 +74,22 @@ std::vector<FurnaceCase> all_surfaces() {
 }  // namespace
 
 TEST_CASE("furnace: no surface of openpbr gives back more light than it gets") {
-    // Layered bases get what a coarse table lets through: at grazing angles on nearly smooth
-    // boundaries it is up to 0.02 off. Everything else keeps to 1e-3.
+    // Layered bases get what a table or a curve lets through, each with its own small error (a
+    // material whose boundary does not vary has a curve). Everything else keeps to 1e-3.
     const auto check = [](const FurnaceCase& c) -> std::string {
         const bool layered = c.p.base_metalness < 1.0f && c.p.transmission_weight < 1.0f;
-        const double albedo =
-            albedo_of(openpbr_lobes(c.p, seen_at(c.cosine), c.front), seen_at(c.cosine));
-        return albedo <= 1 + (layered ? 0.025 : 0.001)
+        SurfaceParams p = c.p;
+        const double by_table =
+            albedo_of(openpbr_lobes(p, seen_at(c.cosine), c.front), seen_at(c.cosine));
+        const Ggx ggx = openpbr_ggx(p.specular_roughness, p.specular_roughness_anisotropy);
+        const ReflectionAlbedoCurve curve(std::sqrt(ggx.ax * ggx.ay), openpbr_boundary_eta(p));
+        p.boundary = &curve;
+        const double by_curve =
+            albedo_of(openpbr_lobes(p, seen_at(c.cosine), c.front), seen_at(c.cosine));
+        return by_table <= 1 + (layered ? 0.006 : 0.001) &&
+                       by_curve <= 1 + (layered ? 0.004 : 0.001)
                    ? ""
-                   : fmt::format("{}: {:.5f}", c.name(), albedo);
+                   : fmt::format("{}: table {:.5f} curve {:.5f}", c.name(), by_table, by_curve);
     };
     CHECK(failures_of(all_surfaces(), check) == "");
 }
@@ -129,7 +136,7 @@ TEST_CASE("furnace: what a rough surface loses to single scattering is bounded")
     }
 }
 
-TEST_CASE("energy: the table agrees with fine quadrature to 0.01 where cells are fine enough") {
+TEST_CASE("energy: the table agrees with fine quadrature to 0.01") {
     struct At {
         float cosine, alpha, eta;
     };
@@ -137,10 +144,8 @@ TEST_CASE("energy: the table agrees with fine quadrature to 0.01 where cells are
     Vec2f u;
     for (std::uint32_t i = 0; i < 300; ++i) {
         u = sample_pair(3, i, 0);
-        // Indices of materials; beyond 89 degrees and below an index of 1.05 Fresnel is steeper
-        // than the cells.
-        points.push_back({std::fmax(i % 2 ? u.x : u.x * u.x, 0.02f), u.y,
-                          1.05f + 2.0f * sample_pair(3, i, 1).x});
+        points.push_back({std::fmax(i % 2 ? u.x : u.x * u.x, 0.005f), std::fmax(u.y, 0.001f),
+                          1.01f + 2.0f * sample_pair(3, i, 1).x});
     }
     const auto check = [](const At& a) -> std::string {
         const float fine = dielectric_reflection_albedo_quadrature(a.cosine, a.alpha, a.eta, 200);
