@@ -39,11 +39,25 @@ Value document_of_obj(const std::string& path) {
 }
 
 void light_the_dark(SceneDesc& scene, bool bare_obj, Problems& problems) {
-    if (has_emitter(scene)) return;
+    if (has_emitter(scene, !bare_obj)) return;
     if (bare_obj) {
+        // A sky alone leaves a white model shapeless; the key light comes from above the automatic
+        // camera, a little to its left.
         scene.environment = EnvironmentDesc{};
-        problems.note(
-            {}, scene.path + ": nothing in it emits light; lit by a neutral sky of radiance 1");
+        scene.environment->radiance = {0.5f, 0.5f, 0.5f};
+        DistantLightDesc key;
+        key.direction = {0.35, -1.0, -0.75};
+        key.irradiance = {1.5f, 1.5f, 1.5f};
+        key.angle_deg = 20;
+        LightDesc light;
+        light.name = "key";
+        light.visible = false;
+        light.shape = key;
+        scene.lights.push_back(light);
+        problems.note({},
+                      scene.path +
+                          ": no light in it; lit by a neutral sky of radiance 0.5 and a soft key "
+                          "light of irradiance 1.5");
     } else {
         problems.warn({}, scene.path +
                               ": nothing in it emits light, the picture will be black (add an "

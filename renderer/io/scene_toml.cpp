@@ -72,11 +72,14 @@ std::vector<bool> materials_in_use(const SceneDesc& scene) {
 
 const KeyList& scene_keys() { return root_rows().list; }
 
-bool has_emitter(const SceneDesc& scene) {
+bool has_emitter(const SceneDesc& scene, bool textured) {
     if (scene.environment || !scene.lights.empty()) return true;
     const std::vector<bool> used = materials_in_use(scene);
     for (std::size_t m = 0; m < used.size(); ++m) {
-        if (used[m] && emits(scene.materials[m])) return true;
+        const MaterialDesc& material = scene.materials[m];
+        const bool by_texture =
+            material.emission_color.texture >= 0 || material.emission_luminance.texture >= 0;
+        if (used[m] && emits(material) && (textured || !by_texture)) return true;
     }
     return false;
 }

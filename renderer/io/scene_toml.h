@@ -19,7 +19,7 @@ SceneDesc read_scene(Value document, const std::string& path, const std::string&
                      const AssetRules& assets, Problems& problems);
 
 /// Whether anything in the scene gives light: a light, an environment, or a material in use that
-/// emits.
-bool has_emitter(const SceneDesc& scene);
+/// emits. textured: emission by a texture counts (it may be a display's few bright dots).
+bool has_emitter(const SceneDesc& scene, bool textured);
 
 }  // namespace tessera

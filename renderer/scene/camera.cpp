@@ -31,14 +31,26 @@ Placed look_at(Vec3d position, Vec3d target, Vec3d up_hint, const SourceLoc& loc
     return {position, right, cross(right, forward), forward, distance};
 }
 
-// A view from the front, a little from the right and above, from which a sphere around the bounds
-// just fits.
-Placed frame_bounds(Vec3d lo, Vec3d hi, double half_angle_small, bool orthographic) {
+// A three-quarter view from the front, a little from the right and above, from which every corner
+// of the bounds is just inside the frame.
+Placed frame_bounds(Vec3d lo, Vec3d hi, double tan_x, double tan_y, bool orthographic) {
+    constexpr double kMargin = 1.06;
     const Vec3d center = (lo + hi) * 0.5;
     const double radius = std::max(length(hi - lo) * 0.5, 1e-6);
     const Vec3d from = normalize(Vec3d{0.55, 0.38, 1.0});
-    const double distance = orthographic ? 3 * radius : 0.92 * radius / std::sin(half_angle_small);
-    return look_at(center + from * std::max(distance, 1.05 * radius), center, {0, 1, 0}, {});
+    Placed c = look_at(center + from, center, {0, 1, 0}, {});
+    double distance = orthographic ? 3 * radius : 1.02 * radius;
+    for (int corner = 0; corner < 8 && !orthographic; ++corner) {
+        const Vec3d q =
+            Vec3d{corner & 1 ? hi.x : lo.x, corner & 2 ? hi.y : lo.y, corner & 4 ? hi.z : lo.z} -
+            center;
+        const double across =
+            std::max(std::abs(dot(q, c.right)) / tan_x, std::abs(dot(q, c.up)) / tan_y);
+        distance = std::max(distance, kMargin * across - dot(q, c.forward));
+    }
+    c.position = center + from * distance;
+    c.to_target = distance;
+    return c;
 }
 
 }  // namespace
@@ -49,7 +61,6 @@ Camera::Camera(const CameraDesc& desc, int width, int height, Vec3d origin, Vec3
     const double aspect = static_cast<double>(width) / height;
     const double tan_asked = std::tan(0.5 * desc.fov_deg * kPiD / 180);
     const double tan_v = desc.fov_axis == FovAxis::vertical ? tan_asked : tan_asked / aspect;
-    const double tan_small = std::min(tan_v, tan_v * aspect);
 
     Placed c;
     double half_height = 0.5 * desc.ortho_height;
@@ -60,7 +71,7 @@ Camera::Camera(const CameraDesc& desc, int width, int height, Vec3d origin, Vec3
         }
         c = {m.p - origin, normalize(m.x), normalize(m.y), normalize(-m.z), 0};
     } else if (desc.automatic) {
-        c = frame_bounds(bounds_min, bounds_max, std::atan(tan_small), orthographic_);
+        c = frame_bounds(bounds_min, bounds_max, tan_v * aspect, tan_v, orthographic_);
         if (orthographic_)
             half_height = 0.5 * length(bounds_max - bounds_min) / std::min(1.0, aspect);
     } else {

@@ -115,7 +115,8 @@ TEST_CASE("bare obj: has an automatic camera, a neutral sky and a note") {
     CHECK(scene.meshes.size() == 1);
     REQUIRE(scene.instances.size() == 1);
     REQUIRE(scene.environment);
-    CHECK(scene.environment->radiance == Float3{1, 1, 1});
+    CHECK(scene.environment->radiance == Float3{0.5f, 0.5f, 0.5f});
+    CHECK(scene.lights.size() == 1);
     CHECK(contains(scene.notes, "lit by a neutral sky"));
     CHECK(contains(scene.files, "one.obj"));
 }
