@@ -54,3 +54,6 @@ target_compile_definitions(tinyobjloader_double INTERFACE TINYOBJLOADER_USE_DOUB
 # Header only, no CMake config needed.
 find_path(TOMLPP_INCLUDE toml++/toml.h REQUIRED)
 find_path(DOCTEST_INCLUDE doctest/doctest.h)
+
+add_library(tessera_xxhash INTERFACE)
+tessera_pkg(tessera_xxhash libxxhash)
