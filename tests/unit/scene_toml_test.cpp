@@ -184,7 +184,7 @@ TEST_CASE("scene toml: a transforms file gives one placement a row, and is check
     const std::string text = "[[sphere]]\nname = 'a'\n[[instance]]\nof = 'a'\ntransforms = 't.f32'";
     const auto file_of = [&](std::vector<float> floats) {
         std::string bytes(floats.size() * sizeof(float), '\0');
-        std::memcpy(bytes.data(), floats.data(), bytes.size());
+        if (!floats.empty()) std::memcpy(bytes.data(), floats.data(), bytes.size());
         folder.write("t.f32", bytes);
     };
     file_of({1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0});
