@@ -106,6 +106,7 @@ ShaderProgram::ShaderProgram(const MaterialDesc& desc) : m_(folded(desc)) {
     facts_.opacity_textured = m_.geometry_opacity.texture >= 0;
     facts_.cutout = facts_.opacity_textured || m_.geometry_opacity.value < 1.0f;
     facts_.emissive = !zero(m_.emission_luminance);
+    facts_.emission_textured = m_.emission_luminance.texture >= 0 || m_.emission_color.texture >= 0;
     facts_.transmission = !zero(m_.transmission_weight);
     facts_.specular = facts_.transmission || !zero(m_.base_metalness) ||
                       (!zero(m_.specular_weight) && m_.specular_ior != 1.0f);
@@ -177,6 +178,12 @@ Color ShaderProgram::base_color(const ShadeInput& in, const TextureStore* store)
 Color ShaderProgram::emission(const ShadeInput& in, const TextureStore* store) const noexcept {
     return max(read(m_.emission_color, in, store) * read(m_.emission_luminance, in, store),
                Color(0.0f));
+}
+
+Color ShaderProgram::visible_emission(const ShadeInput& in,
+                                      const TextureStore* store) const noexcept {
+    const Color c = emission(in, store);
+    return facts_.cutout ? c * opacity(in.uv, store) : c;
 }
 
 Color ShaderProgram::mean_emission(const TextureStore* store) const noexcept {

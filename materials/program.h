@@ -19,6 +19,7 @@ struct ProgramFacts {
     bool cutout = false;  // opacity can be below 1
     bool opacity_textured = false;
     bool emissive = false;
+    bool emission_textured = false;
     bool specular = false;  // any lobe other than Lambert's
     bool transmission = false;
     bool textured = false;  // reads an image while shading
@@ -47,6 +48,9 @@ public:
     Color base_color(const ShadeInput& in, const TextureStore* store) const noexcept;
     /// Radiance leaving the surface by itself.
     Color emission(const ShadeInput& in, const TextureStore* store) const noexcept;
+    /// Emission times opacity: what of it is there on average, for light sampling, whose shadow
+    /// rays end before the surface and are not asked.
+    Color visible_emission(const ShadeInput& in, const TextureStore* store) const noexcept;
     /// Mean emission over the texture, for choosing lights.
     Color mean_emission(const TextureStore* store) const noexcept;
     /// 1: light stops here.

@@ -27,7 +27,8 @@ struct Hit {
     std::uint32_t geom = kNone;
     std::uint32_t inst = kNone;
     float u = 0, v = 0;
-    float t = kInfinity;  // last bits may depend on packet or single ray; never reaches a pixel
+    float t = kInfinity;    // last bits may depend on packet or single ray; never reaches a pixel
+    bool far_side = false;  // of a cut-out, for the opacity test: the wall that faces away
     bool valid() const { return geom != kNone; }
 };
 

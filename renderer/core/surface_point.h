@@ -15,6 +15,7 @@ struct SurfacePoint {
     Vec3f ns;       // unit shading normal, on ng's side
     Vec3f dpdu;     // tangent along u (not unit); zero if there are no uvs
     Vec2f uv;
+    float handed = 1;         // -1 where the uv chart is mirrored
     float uv_per_length = 0;  // uv units per scene unit on the surface, for texture footprints
     Color vertex_color{1.0f};
     std::int32_t material = -1;

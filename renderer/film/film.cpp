@@ -1,5 +1,7 @@
 #include "renderer/film/film.h"
 
+#include <algorithm>
+
 namespace tessera {
 namespace {
 
@@ -71,6 +73,10 @@ std::vector<Layer> Film::layers() const {
             layer.pixels[i * 3] = static_cast<float>(sums[i].x * w);
             layer.pixels[i * 3 + 1] = static_cast<float>(sums[i].y * w);
             layer.pixels[i * 3 + 2] = static_cast<float>(sums[i].z * w);
+            // Albedo is a colour of at most 1; single samples of it may be more.
+            for (int c = 0; kind == LayerKind::color && c < 3; ++c) {
+                layer.pixels[i * 3 + c] = std::min(layer.pixels[i * 3 + c], 1.0f);
+            }
         }
         out.push_back(std::move(layer));
     };

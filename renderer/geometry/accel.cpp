@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstring>
 #include <map>
+#include <mutex>
 #include <new>
 #include <vector>
 
@@ -36,6 +37,11 @@ void filter_opacity(const RTCFilterFunctionNArguments* args) {
         hit.inst = RTCHitN_instID(args->hit, args->N, i, 0);
         hit.u = RTCHitN_u(args->hit, args->N, i);
         hit.v = RTCHitN_v(args->hit, args->N, i);
+        const Vec3f ng{RTCHitN_Ng_x(args->hit, args->N, i), RTCHitN_Ng_y(args->hit, args->N, i),
+                       RTCHitN_Ng_z(args->hit, args->N, i)};
+        const Vec3f d{RTCRayN_dir_x(args->ray, args->N, i), RTCRayN_dir_y(args->ray, args->N, i),
+                      RTCRayN_dir_z(args->ray, args->N, i)};
+        hit.far_side = dot(ng, d) > 0.0f;
         const std::uint32_t seed = call->seeds[RTCRayN_id(args->ray, args->N, i)];
         if (!call->opacity.stops(call->opacity.scene, hit, seed)) args->valid[i] = 0;
     }
@@ -65,6 +71,7 @@ struct Accel::Impl {
     std::atomic<std::int64_t> bytes{0};
     RTCError error = RTC_ERROR_NONE;
     std::string message;
+    std::mutex mutex;  // of the two above: Embree reports from its build threads
     OpacityTest opacity;
 
     ~Impl() {
@@ -87,6 +94,7 @@ struct Accel::Impl {
             device,
             [](void* self, RTCError code, const char* text) {
                 auto* impl = static_cast<Impl*>(self);
+                const std::lock_guard lock(impl->mutex);
                 if (impl->error == RTC_ERROR_NONE)
                     impl->error = code, impl->message = text ? text : "";
             },

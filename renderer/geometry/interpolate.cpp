@@ -33,14 +33,18 @@ void to_world(const Placement& placed, SurfacePoint& s) {
     s.p_error = carried * (1.0f + gamma_bound(3)) + magnitude * gamma_bound(4) +
                 Vec3f(max_component(magnitude) * placed.condition * gamma_bound(2));
     // Normals by the cofactors, their sign kept outward under a mirror.
-    Affinef cofactor(cross(m.y, m.z), cross(m.z, m.x), cross(m.x, m.y), {});
-    const float sign = dot(m.x, cofactor.x) < 0.0f ? -1.0f : 1.0f;
+    // Scaled first: the products of a huge map would overflow.
+    const float scale = 1.0f / max_component(max(abs(m.x), max(abs(m.y), abs(m.z))));
+    const Vec3f x = m.x * scale, y = m.y * scale, z = m.z * scale;
+    const Affinef cofactor(cross(y, z), cross(z, x), cross(x, y), {});
+    const float sign = dot(x, cofactor.x) < 0.0f ? -1.0f : 1.0f;
     s.ng = normalize(cofactor.vector(s.ng)) * sign;
     s.ns = normalize(cofactor.vector(s.ns)) * sign;
 }
 
 void texture_frame_to_world(const Affinef& m, SurfacePoint& s) {
     s.dpdu = m.vector(s.dpdu);
+    if (m.determinant() < 0.0f) s.handed = -s.handed;
     const float scale = std::cbrt(std::fabs(m.determinant()));
     s.uv_per_length = scale > 0.0f ? s.uv_per_length / scale : 0.0f;
 }
@@ -86,6 +90,7 @@ void mesh_texture_frame(const Mesh& mesh, const Hit& hit, SurfacePoint& s) {
     const Vec2f e1 = tb - ta, e2 = tc - ta;
     const float uv_area2 = e1.x * e2.y - e2.x * e1.y;
     s.uv_per_length = std::sqrt(std::fabs(uv_area2) / length(cross(ab, ac)));
+    s.handed = uv_area2 < 0.0f ? -1.0f : 1.0f;
     if (uv_area2 != 0.0f) s.dpdu = (ab * e2.y - ac * e1.y) * (1.0f / uv_area2);
 }
 

@@ -54,7 +54,6 @@ private:
         std::uint16_t diffuse = 0, glossy = 0, transmission = 0;
         bool last = false;  // the ray may still find light, nothing more
         bool layers_done = false;
-        Color layer_throughput{1.0f};
         // Light found at this vertex, waiting for its shadow ray.
         Color pending{0.0f};
     };
@@ -157,11 +156,13 @@ private:
         if (!hits_[i].valid()) {
             out_[i].radiance +=
                 lane.throughput * scene_.lights().escaped(d, lane.bsdf_pdf, depth == 0);
+            // What a mirror shows of the surroundings counts as white.
+            if (!lane.layers_done && depth > 0) out_[i].albedo = lane.throughput;
             return false;
         }
         SurfacePoint s =
             surface_point(scene_.geometry(), targets_[i], hits_[i], lane.ray, F.vertex_colors);
-        if (!is_finite(s.p) || !is_finite(s.ng) || !is_finite(s.ns)) {
+        if (!is_finite(s.p) || !is_finite(s.ng) || !is_finite(s.ns) || !(length2(s.ng) > 0.5f)) {
             invalid(InvalidCause::hit, i);
             return false;
         }
@@ -206,7 +207,7 @@ private:
         if (light.material >= 0) {
             ShadeInput in;
             in.uv = light.uv;
-            light.radiance = scene_.program(light.material).emission(in, scene_.textures());
+            light.radiance = scene_.program(light.material).visible_emission(in, scene_.textures());
         }
         const float weight = light.delta ? 1.0f : mis_power(light.pdf, e.pdf);
         const Color c = lane.throughput * e.f * light.radiance * (weight / light.pdf);
@@ -266,6 +267,9 @@ private:
         // The throughput is kept for the shadow ray's sake in `pending`; from here on it is the
         // next ray's.
         lane.throughput *= b->weight;
+        // Behind a mirror or clear glass the albedo is that of what is seen there.
+        if (!b->delta) lane.layers_done = true;
+        if (!lane.layers_done) out_[i].albedo = Color(0.0f);
         lane.bsdf_pdf = b->pdf;
         lane.eta_scale *= b->eta * b->eta;
         if (!(max_component(lane.throughput) > 0.0f)) return false;
@@ -296,7 +300,6 @@ private:
         lane.ray.t_max = kInfinity;
         lane.ray.mask = kOtherRays;
         lane.cone_spread = std::max(lane.cone_spread, b->spread);
-        if (!b->delta) lane.layers_done = true;
         if (!traceable(lane.ray.o, lane.ray.d)) {
             invalid(InvalidCause::bounce_ray, i);
             return false;
@@ -336,7 +339,6 @@ private:
         for (LaneMask m = job_.lanes; m != 0; m &= m - 1) {
             const int i = std::countr_zero(m);
             PathSample& o = out_[i];
-            o.albedo = min(o.albedo, Color(1.0f));
             if (!is_finite(o.radiance) || min_component(o.radiance) < 0.0f) {
                 invalid(InvalidCause::radiance, i);
                 o.radiance = Color(0.0f);

@@ -68,7 +68,8 @@ FacingFrame facing_frame(const SurfacePoint& s, const ShaderProgram& program, co
                     program.has_normal_map() ? program.normal(in, textures) : std::nullopt) {
                 // The map lives in the frame of the unflipped normal.
                 const Frame base = frame_along(s.ns, s.dpdu);
-                const Vec3f m = normalize(base.to_world(*mapped));
+                const Vec3f m =
+                    normalize(base.to_world({mapped->x, mapped->y * s.handed, mapped->z}));
                 n = f.front ? m : -m;
                 if (dot(n, f.ng) <= 0.0f) n = f.front ? s.ns : -s.ns;
             }

@@ -24,7 +24,7 @@ public:
           scene_(*job.scene),
           out_(out),
           counters_(counters),
-          max_depth_(std::min(scene_.settings().max_depth, kStack - 2)) {}
+          max_depth_(std::min(scene_.settings().max_depth, kMaxDepth)) {}
 
     void trace() noexcept {
         start();
@@ -39,7 +39,9 @@ public:
     }
 
 private:
-    static constexpr int kStack = 66;
+    // A surface has up to four children and one node is taken for them: three more a level.
+    static constexpr int kMaxDepth = 64;
+    static constexpr int kStack = 3 * kMaxDepth + 2;
     static constexpr float kFaintest = 1e-4f;
 
     struct Node {
@@ -113,7 +115,8 @@ private:
         Vertex& v = vertex_[i];
         v.s = surface_point(scene_.geometry(), scene_.accel().target(hit), hit, node.ray,
                             F.vertex_colors);
-        if (!is_finite(v.s.p) || !is_finite(v.s.ng) || !is_finite(v.s.ns))
+        if (!is_finite(v.s.p) || !is_finite(v.s.ng) || !is_finite(v.s.ns) ||
+            !(length2(v.s.ng) > 0.5f))
             return invalid(InvalidCause::hit, i);
         node.cone_width += node.cone_spread * dot(v.s.p - node.ray.o, node.ray.d);
         if (node.depth == 0) note_first_hit(i);
@@ -171,7 +174,7 @@ private:
         if (light.material >= 0) {
             ShadeInput in;
             in.uv = light.uv;
-            light.radiance = scene_.program(light.material).emission(in, scene_.textures());
+            light.radiance = scene_.program(light.material).visible_emission(in, scene_.textures());
         }
         pending_[i] =
             node_[i].weight * v.lobes.eval(v.frame.wo, wi).f * light.radiance * (1.0f / light.pdf);
@@ -242,7 +245,6 @@ private:
 
     void finish(int i) noexcept {
         PathSample& o = out_[i];
-        o.albedo = min(o.albedo, Color(1.0f));
         if (!is_finite(o.radiance) || min_component(o.radiance) < 0.0f) {
             invalid(InvalidCause::radiance, i);
             o.radiance = Color(0.0f);

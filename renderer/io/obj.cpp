@@ -79,7 +79,7 @@ void remark(const ObjMesh& built, const ObjRemainder& remainder, Problems& probl
 int default_material(const ObjMaterialUse& use, const ObjOptions& options, Tally& tally,
                      SceneDesc& scene) {
     MaterialDesc grey;
-    grey.name = use.line > 0 ? use.name : "default";
+    grey.name = use.line > 0 ? use.name : "(no material)";
     grey.specular_weight.value = 0;
     // A stand-in without a place: the scene's own definition follows.
     const bool defined = use.line > 0 && options.defined.contains(use.name);

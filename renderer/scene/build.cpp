@@ -181,7 +181,7 @@ private:
         Sphere s;
         s.radius = static_cast<float>(desc.radius);
         s.material = desc.material < 0 ? default_material() : desc.material;
-        if (is_similarity(to_scene)) {
+        if (keeps_form(to_scene, i, s.material)) {
             s.center = Vec3f(to_scene.point(Vec3d(desc.center)));
             s.radius = static_cast<float>(desc.radius * length(to_scene.x));
         } else {
@@ -199,7 +199,7 @@ private:
         d.radius = static_cast<float>(desc.radius);
         d.normal = Vec3f(normalize(Vec3d(desc.normal)));
         d.material = desc.material < 0 ? default_material() : desc.material;
-        if (is_similarity(to_scene)) {
+        if (keeps_form(to_scene, i, d.material)) {
             d.center = Vec3f(to_scene.point(Vec3d(desc.center)));
             d.normal = Vec3f(normalize(to_scene.normal(Vec3d(desc.normal))));
             d.radius = static_cast<float>(desc.radius * length(to_scene.x));
@@ -210,6 +210,14 @@ private:
         placed.kind = PlacedKind::disc;
         placed.shape = static_cast<std::uint32_t>(scene_->geometry_.discs.size());
         scene_->geometry_.discs.push_back(d);
+    }
+
+    // Whether a sphere or disc can be moved into place by centre and radius alone. Texture
+    // coordinates turn with the shape, which only an instance does.
+    bool keeps_form(const Affined& m, const FlatInstance& i, int own_material) const {
+        if (!is_similarity(m)) return false;
+        const ProgramFacts& f = facts(i.material >= 0 ? i.material : own_material);
+        return is_scaling(m) || !(f.uv || f.tangent);
     }
 
     bool quadric_cutout(const FlatInstance& i, int own_material, const SourceLoc& loc) {

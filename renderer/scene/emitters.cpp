@@ -127,8 +127,15 @@ struct EmitterBuilder {
 
     void quadric_light(Placement& placed, std::int32_t material) {
         const ShaderProgram& program = in.programs[material];
-        // A textured or stretched emitter is left to the rays that find it by chance.
-        if (!program.facts().emissive || program.facts().textured || placed.instanced) return;
+        const ProgramFacts& facts = program.facts();
+        if (!facts.emissive) return;
+        if (facts.emission_textured || facts.cutout || placed.instanced) {
+            in.problems.warn({},
+                             "an emissive sphere or disc that is textured, partly transparent or "
+                             "stretched is found by "
+                             "chance only: expect noise (a [[light]] is sampled)");
+            return;
+        }
         const Color radiance = program.mean_emission(in.textures);
         placed.light = next();
         if (placed.kind == PlacedKind::sphere) {

@@ -29,7 +29,8 @@ bool opacity_stops(const void* opaque_scene, const Hit& hit, std::uint32_t seed)
                                                           : program.opacity_factor();
     if (opacity >= 1.0f) return true;
     if (opacity <= 0.0f) return false;
-    const std::uint32_t h = hash_combine(hash_combine(seed, face), target.placement + 0x51ed270bu);
+    const std::uint32_t h = hash_combine(
+        hash_combine(seed, face), 2 * target.placement + (hit.far_side ? 1u : 0u) + 0x51ed270bu);
     return static_cast<float>(h >> 8) * 0x1p-24f < opacity;
 }
 

@@ -68,8 +68,14 @@ Vec3d mesh_center(const MeshDesc& mesh) {
     return b.empty() ? Vec3d{} : (b.lo + b.hi) * 0.5;
 }
 
+bool is_scaling(const Affined& m) {
+    const double s = m.x.x, tolerance = 1e-12 * s * s;
+    return s > 0 && length2(m.x - Vec3d{s, 0, 0}) < tolerance &&
+           length2(m.y - Vec3d{0, s, 0}) < tolerance && length2(m.z - Vec3d{0, 0, s}) < tolerance;
+}
+
 bool is_similarity(const Affined& m) {
-    const double a = length2(m.x), b = length2(m.y), c = length2(m.z), tolerance = 1e-10 * a;
+    const double a = length2(m.x), b = length2(m.y), c = length2(m.z), tolerance = 1e-6 * a;
     return std::abs(a - b) < tolerance && std::abs(a - c) < tolerance &&
            std::abs(dot(m.x, m.y)) < tolerance && std::abs(dot(m.x, m.z)) < tolerance &&
            std::abs(dot(m.y, m.z)) < tolerance;

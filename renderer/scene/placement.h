@@ -29,5 +29,7 @@ Bounds light_bounds(const LightDesc& light);
 Vec3d mesh_center(const MeshDesc& mesh);
 /// Rotation, mirror and one scale: a sphere stays a sphere.
 bool is_similarity(const Affined& m);
+/// One positive scale and nothing else (but the translation).
+bool is_scaling(const Affined& m);
 
 }  // namespace tessera
