@@ -17,6 +17,7 @@ if(TESSERA_MARCH)
   target_compile_definitions(tessera_flags INTERFACE TESSERA_MARCH="${TESSERA_MARCH}")
 endif()
 if(TESSERA_SANITIZE)
+  target_compile_options(tessera_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)  # false alarms: the tools tell for real
   target_compile_options(tessera_flags INTERFACE -fsanitize=${TESSERA_SANITIZE} -fno-omit-frame-pointer -g1)
   target_link_options(tessera_flags INTERFACE -fsanitize=${TESSERA_SANITIZE})
   if(TESSERA_SANITIZE MATCHES "undefined")
