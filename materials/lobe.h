@@ -4,7 +4,6 @@
 // Pdfs are per solid angle.
 
 #include <cstdint>
-#include <optional>
 
 #include "renderer/core/vec.h"
 
@@ -18,9 +17,10 @@ struct LobeEval {
     float pdf = 0;
 };
 
-/// Lobes have eval(wo, wi), sample(wo, u, choice), albedo(wo), and, unless they are deltas,
+/// Lobes have eval(wo, wi), sample(wo, u, choice, out), albedo(wo), and, unless they are deltas,
 /// direction(): sample() without weight and pdf, for when those of several lobes together are
-/// wanted.
+/// wanted. Samples are filled in where they are kept (an optional that is copied cost more than its
+/// making); false: there is none.
 struct LobeSample {
     Vec3f wi;
     Color weight;   // f / pdf; for a delta lobe the whole ratio
@@ -30,6 +30,17 @@ struct LobeSample {
     float eta = 1;     // index on wi's side over wo's side; 1 unless refracted
     float spread = 0;  // half angle by which a ray cone grows, radians, rough
 };
+
+/// A lobe's sample by its direction() and eval().
+template <class Lobe>
+bool sample_by_eval(const Lobe& lobe, Vec3f wo, Vec2f u, float choice, LobeSample& out) {
+    if (!lobe.direction(wo, u, choice, out)) return false;
+    const LobeEval e = lobe.eval(wo, out.wi);
+    if (!(e.pdf > 0.0f)) return false;
+    out.weight = e.f / e.pdf;
+    out.pdf = e.pdf;
+    return true;
+}
 
 /// Relative luminance of linear Rec.709; near enough for choosing lobes and lights in any working
 /// space.

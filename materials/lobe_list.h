@@ -45,7 +45,7 @@ public:
     /// All lobes that are not deltas, with the density of sample().
     LobeEval eval(Vec3f wo, Vec3f wi) const noexcept;
     /// choice picks the lobe (and within it), u the direction.
-    std::optional<LobeSample> sample(Vec3f wo, Vec2f u, float choice) const noexcept;
+    bool sample(Vec3f wo, Vec2f u, float choice, LobeSample& out) const noexcept;
     /// Directional albedo toward wo, roughly; for the albedo pass.
     Color albedo(Vec3f wo) const noexcept;
 
@@ -106,36 +106,35 @@ inline LobeEval LobeList::eval(Vec3f wo, Vec3f wi) const noexcept {
     return sum;
 }
 
-inline std::optional<LobeSample> LobeList::sample(Vec3f wo, Vec2f u, float choice) const noexcept {
-    if (size_ == 0) return std::nullopt;
+inline bool LobeList::sample(Vec3f wo, Vec2f u, float choice, LobeSample& out) const noexcept {
+    if (size_ == 0) return false;
     int chosen = 0;
     float below = 0;
     while (chosen < size_ - 1 && choice >= below + slots_[chosen].lobe.pick)
         below += slots_[chosen++].lobe.pick;
     const Lobe& lobe = slots_[chosen].lobe;
-    if (!(lobe.pick > 0.0f)) return std::nullopt;
+    if (!(lobe.pick > 0.0f)) return false;
     const float rest = size_ == 1 ? choice : std::min((choice - below) / lobe.pick, 0x1.fffffep-1f);
     if (size_ == 1 || lobe.delta) {
-        auto s = std::visit([&](const auto& m) { return m.sample(wo, u, rest); }, lobe.model);
-        if (s) s->weight *= size_ == 1 ? lobe.weight : lobe.weight * (1.0f / lobe.pick);
-        return s;
+        if (!std::visit([&](const auto& m) { return m.sample(wo, u, rest, out); }, lobe.model))
+            return false;
+        out.weight *= size_ == 1 ? lobe.weight : lobe.weight * (1.0f / lobe.pick);
+        return true;
     }
     // Several lobes can make this direction: the balance of all of them, not of the one that did.
-    auto s = std::visit(
-        [&](const auto& m) -> std::optional<LobeSample> {
-            if constexpr (std::remove_cvref_t<decltype(m)>::kDelta) {
-                return std::nullopt;
-            } else {
-                return m.direction(wo, u, rest);
-            }
-        },
-        lobe.model);
-    if (!s) return s;
-    const LobeEval all = eval(wo, s->wi);
-    if (!(all.pdf > 0.0f)) return std::nullopt;
-    s->weight = all.f / all.pdf;
-    s->pdf = all.pdf;
-    return s;
+    const auto direction = [&](const auto& m) {
+        if constexpr (std::remove_cvref_t<decltype(m)>::kDelta) {
+            return false;
+        } else {
+            return m.direction(wo, u, rest, out);
+        }
+    };
+    if (!std::visit(direction, lobe.model)) return false;
+    const LobeEval all = eval(wo, out.wi);
+    if (!(all.pdf > 0.0f)) return false;
+    out.weight = all.f / all.pdf;
+    out.pdf = all.pdf;
+    return true;
 }
 
 inline Color LobeList::albedo(Vec3f wo) const noexcept {

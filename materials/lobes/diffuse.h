@@ -14,15 +14,14 @@ struct DiffuseLobe {
         const float p = wi.z * kInvPi;
         return {Color(p), p};
     }
-    std::optional<LobeSample> direction(Vec3f, Vec2f u, float) const {
-        const Vec3f wi = warp_cosine(u);
-        if (!(wi.z > 0.0f)) return std::nullopt;
-        return LobeSample{wi, Color(1.0f), 0.0f, LobeClass::diffuse, false, 1.0f, 0.2f};
+    bool direction(Vec3f, Vec2f u, float, LobeSample& out) const {
+        out = {warp_cosine(u), Color(1.0f), 0.0f, LobeClass::diffuse, false, 1.0f, 0.2f};
+        return out.wi.z > 0.0f;
     }
-    std::optional<LobeSample> sample(Vec3f wo, Vec2f u, float choice) const {
-        auto s = direction(wo, u, choice);
-        if (s) s->pdf = s->wi.z * kInvPi;
-        return s;
+    bool sample(Vec3f wo, Vec2f u, float choice, LobeSample& out) const {
+        if (!direction(wo, u, choice, out)) return false;
+        out.pdf = out.wi.z * kInvPi;
+        return true;
     }
     Color albedo(Vec3f) const { return Color(1.0f); }
 };

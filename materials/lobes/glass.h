@@ -36,31 +36,24 @@ struct RoughGlass {
         const float pdf = visible * (1.0f - fresnel) * std::fabs(ih) / (denom * denom);
         return {transmit_tint * (pdf * g / (eta * eta)), pdf};
     }
-    std::optional<LobeSample> direction(Vec3f wo, Vec2f u, float choice) const {
+    bool direction(Vec3f wo, Vec2f u, float choice, LobeSample& out) const {
         const Vec3f h = ggx.sample_visible(wo, u);
         const float oh = dot(wo, h);
-        if (!(oh > 0.0f)) return std::nullopt;
+        if (!(oh > 0.0f)) return false;
         float cos_t = 0;
         const float fresnel = fresnel_dielectric(oh, eta, &cos_t);
         const bool reflected = choice < fresnel;
-        const Vec3f wi = reflected ? reflect(wo, h) : normalize(refract(wo, h, eta, cos_t));
-        if (reflected ? !(wi.z > 0.0f) : !(wi.z < 0.0f)) return std::nullopt;
-        return LobeSample{wi,
-                          Color(0.0f),
-                          0.0f,
-                          reflected ? LobeClass::glossy : LobeClass::transmission,
-                          false,
-                          reflected ? 1.0f : eta,
-                          0.25f * std::max(ggx.ax, ggx.ay)};
+        out = {reflected ? reflect(wo, h) : normalize(refract(wo, h, eta, cos_t)),
+               Color(0.0f),
+               0.0f,
+               reflected ? LobeClass::glossy : LobeClass::transmission,
+               false,
+               reflected ? 1.0f : eta,
+               0.25f * std::max(ggx.ax, ggx.ay)};
+        return reflected ? out.wi.z > 0.0f : out.wi.z < 0.0f;
     }
-    std::optional<LobeSample> sample(Vec3f wo, Vec2f u, float choice) const {
-        auto s = direction(wo, u, choice);
-        if (!s) return s;
-        const LobeEval e = eval(wo, s->wi);
-        if (!(e.pdf > 0.0f)) return std::nullopt;
-        s->weight = e.f / e.pdf;
-        s->pdf = e.pdf;
-        return s;
+    bool sample(Vec3f wo, Vec2f u, float choice, LobeSample& out) const {
+        return sample_by_eval(*this, wo, u, choice, out);
     }
     Color albedo(Vec3f wo) const {
         const float f = fresnel_dielectric(wo.z, eta);
@@ -74,11 +67,11 @@ struct SmoothGlass {
     Color reflect_tint{1.0f}, transmit_tint{1.0f};
 
     LobeEval eval(Vec3f, Vec3f) const { return {}; }
-    std::optional<LobeSample> sample(Vec3f wo, Vec2f, float choice) const {
+    bool sample(Vec3f wo, Vec2f, float choice, LobeSample& out) const {
         float cos_t = 0;
         const float fresnel = fresnel_dielectric(wo.z, eta, &cos_t);
-        if (choice < fresnel) return reflected(wo);
-        return transmitted(wo, cos_t);
+        out = choice < fresnel ? reflected(wo) : transmitted(wo, cos_t);
+        return true;
     }
     /// The two children of a ray tree, weighted by nothing: the caller multiplies by Fresnel's
     /// shares.
@@ -112,12 +105,15 @@ struct ThinGlass {
         return 2.0f * f / (1.0f + f);
     }
     LobeEval eval(Vec3f, Vec3f) const { return {}; }
-    std::optional<LobeSample> sample(Vec3f wo, Vec2f, float choice) const {
-        if (choice < reflectance(wo.z)) {
-            return LobeSample{
-                {-wo.x, -wo.y, wo.z}, reflect_tint, 0.0f, LobeClass::glossy, true, 1.0f, 0.0f};
-        }
-        return LobeSample{-wo, transmit_tint, 0.0f, LobeClass::transmission, true, 1.0f, 0.0f};
+    bool sample(Vec3f wo, Vec2f, float choice, LobeSample& out) const {
+        out = choice < reflectance(wo.z) ? reflected(wo) : transmitted(wo);
+        return true;
+    }
+    LobeSample reflected(Vec3f wo) const {
+        return {{-wo.x, -wo.y, wo.z}, reflect_tint, 0.0f, LobeClass::glossy, true, 1.0f, 0.0f};
+    }
+    LobeSample transmitted(Vec3f wo) const {
+        return {-wo, transmit_tint, 0.0f, LobeClass::transmission, true, 1.0f, 0.0f};
     }
     Color albedo(Vec3f wo) const {
         const float r = reflectance(wo.z);

@@ -35,25 +35,18 @@ struct RoughReflection {
         return {fresnel(clamp01(dot(wo, h))) * (common / (masked + ggx.lambda(wi))),
                 common / masked};
     }
-    std::optional<LobeSample> direction(Vec3f wo, Vec2f u, float) const {
-        const Vec3f wi = reflect(wo, ggx.sample_visible(wo, u));
-        if (!(wi.z > 0.0f)) return std::nullopt;
-        return LobeSample{wi,
-                          Color(0.0f),
-                          0.0f,
-                          LobeClass::glossy,
-                          false,
-                          1.0f,
-                          0.25f * std::max(ggx.ax, ggx.ay)};
+    bool direction(Vec3f wo, Vec2f u, float, LobeSample& out) const {
+        out = {reflect(wo, ggx.sample_visible(wo, u)),
+               Color(0.0f),
+               0.0f,
+               LobeClass::glossy,
+               false,
+               1.0f,
+               0.25f * std::max(ggx.ax, ggx.ay)};
+        return out.wi.z > 0.0f;
     }
-    std::optional<LobeSample> sample(Vec3f wo, Vec2f u, float choice) const {
-        auto s = direction(wo, u, choice);
-        if (!s) return s;
-        const LobeEval e = eval(wo, s->wi);
-        if (!(e.pdf > 0.0f)) return std::nullopt;
-        s->weight = e.f / e.pdf;
-        s->pdf = e.pdf;
-        return s;
+    bool sample(Vec3f wo, Vec2f u, float choice, LobeSample& out) const {
+        return sample_by_eval(*this, wo, u, choice, out);
     }
     Color albedo(Vec3f) const { return reflectance; }
 };
@@ -64,9 +57,9 @@ struct SmoothReflection {
     Fresnel fresnel;
 
     LobeEval eval(Vec3f, Vec3f) const { return {}; }
-    std::optional<LobeSample> sample(Vec3f wo, Vec2f, float) const {
-        return LobeSample{
-            {-wo.x, -wo.y, wo.z}, fresnel(wo.z), 0.0f, LobeClass::glossy, true, 1.0f, 0.0f};
+    bool sample(Vec3f wo, Vec2f, float, LobeSample& out) const {
+        out = {{-wo.x, -wo.y, wo.z}, fresnel(wo.z), 0.0f, LobeClass::glossy, true, 1.0f, 0.0f};
+        return true;
     }
     Color albedo(Vec3f wo) const { return fresnel(wo.z); }
 };

@@ -26,28 +26,27 @@ double cumulate(std::span<const double> weights, float* out) {
 }
 
 struct Inverted {
-    int index;
     float position;  // within the cell, [0, 1)
     float density;   // share of the cell times the number of cells
 };
 
-// For each n-th of the unit interval, the cell in which it starts.
-void make_guide(const float* cdf, int n, std::int32_t* guide) {
-    int i = 0;
-    for (int k = 0; k < n; ++k) {
-        const float u = static_cast<float>(k) / static_cast<float>(n);
-        while (i < n - 1 && cdf[i + 1] <= u) ++i;
-        guide[k] = i;
+// The last of n cells that starts at or below u, for each lane in its own cumulative. No branch
+// depends on what is found, and the lanes' searches run side by side.
+template <int N>
+void find_cells(const float* const (&cdf)[N], int n, const float (&u)[N], int (&out)[N]) {
+    for (int& first : out) first = 0;
+    while (n > 1) {
+        const int half = n / 2;
+        for (int lane = 0; lane < N; ++lane)
+            out[lane] += cdf[lane][out[lane] + half] <= u[lane] ? half : 0;
+        n -= half;
     }
 }
 
-Inverted invert(const float* cdf, const std::int32_t* guide, int n, float u) {
-    int i = guide[std::min(static_cast<int>(u * static_cast<float>(n)), n - 1)];
-    while (i > 0 && cdf[i] > u) --i;  // rounding of the product
-    while (i < n - 1 && cdf[i + 1] <= u) ++i;
+Inverted within(const float* cdf, int i, int n, float u) {
     const float share = cdf[i + 1] - cdf[i];
     const float position = share > 0.0f ? (u - cdf[i]) / share : 0.5f;
-    return {i, std::min(position, 0x1.fffffep-1f), share * static_cast<float>(n)};
+    return {std::min(position, 0x1.fffffep-1f), share * static_cast<float>(n)};
 }
 
 }  // namespace
@@ -81,40 +80,43 @@ AliasTable::AliasTable(std::span<const double> weights)
     for (std::uint32_t i : small) cells_[i].keep = cells_[i].probability > 0.0f ? 1.0f : 0.0f;
 }
 
-AliasTable::Pick AliasTable::sample(float u) const noexcept {
-    const float scaled = u * count_;
-    const auto i = static_cast<std::uint32_t>(static_cast<int>(std::min(scaled, count_ - 1.0f)));
-    const float within = std::min(scaled - static_cast<float>(i), 0x1.fffffep-1f);
-    const Cell& cell = cells_[i];
-    if (within < cell.keep) return {i, cell.probability, within / cell.keep};
-    const float rest = (within - cell.keep) / (1.0f - cell.keep);
-    return {cell.alias, cells_[cell.alias].probability, std::min(rest, 0x1.fffffep-1f)};
-}
-
 Distribution2D::Distribution2D(int width, int height, std::span<const double> weights)
-    : width_(width),
-      height_(height),
-      rows_(height + 1),
-      cells_(std::size_t(width + 1) * height),
-      row_guide_(height),
-      cell_guide_(std::size_t(width) * height) {
+    : width_(width), height_(height), rows_(height + 1), cells_(std::size_t(width + 1) * height) {
     std::vector<double> row_sums(height);
     for (int y = 0; y < height; ++y) {
         float* row = &cells_[std::size_t(y) * (width + 1)];
         row_sums[y] = cumulate(weights.subspan(std::size_t(y) * width, width), row);
-        make_guide(row, width, &cell_guide_[std::size_t(y) * width]);
     }
     mean_ = cumulate(row_sums, rows_.data()) / (static_cast<double>(width) * height);
-    make_guide(rows_.data(), height, row_guide_.data());
+}
+
+template <int N>
+void Distribution2D::invert(const float (&ux)[N], const float (&uy)[N], float (&x)[N],
+                            float (&y)[N], float (&pdf)[N]) const noexcept {
+    const float* table[N];
+    int row[N], cell[N];
+    for (int i = 0; i < N; ++i) table[i] = rows_.data();
+    find_cells(table, height_, uy, row);
+    for (int i = 0; i < N; ++i) table[i] = &cells_[std::size_t(row[i]) * (width_ + 1)];
+    find_cells(table, width_, ux, cell);
+    for (int i = 0; i < N; ++i) {
+        const Inverted down = within(rows_.data(), row[i], height_, uy[i]);
+        const Inverted across = within(table[i], cell[i], width_, ux[i]);
+        x[i] = (static_cast<float>(cell[i]) + across.position) / static_cast<float>(width_);
+        y[i] = (static_cast<float>(row[i]) + down.position) / static_cast<float>(height_);
+        pdf[i] = across.density * down.density;
+    }
 }
 
 Distribution2D::Sample Distribution2D::sample(Vec2f u) const noexcept {
-    const Inverted y = invert(rows_.data(), row_guide_.data(), height_, u.y);
-    const Inverted x = invert(&cells_[std::size_t(y.index) * (width_ + 1)],
-                              &cell_guide_[std::size_t(y.index) * width_], width_, u.x);
-    return {{(static_cast<float>(x.index) + x.position) / static_cast<float>(width_),
-             (static_cast<float>(y.index) + y.position) / static_cast<float>(height_)},
-            x.density * y.density};
+    float x[1], y[1], pdf[1];
+    invert<1>({u.x}, {u.y}, x, y, pdf);
+    return {{x[0], y[0]}, pdf[0]};
+}
+
+void Distribution2D::sample(const SamplePairs& u, SamplePairs& uv,
+                            float (&pdf)[kLanes]) const noexcept {
+    invert(u.x, u.y, uv.x, uv.y, pdf);
 }
 
 float Distribution2D::pdf(Vec2f uv) const noexcept {

@@ -2,11 +2,14 @@
 // Piecewise-constant distributions over tables. Built in double; sums are exact enough for any
 // table we meet.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "renderer/core/ray.h"
+#include "renderer/core/sampler.h"
 #include "renderer/core/vec.h"
 
 namespace tessera {
@@ -53,6 +56,8 @@ public:
     Distribution2D(int width, int height, std::span<const double> weights);
 
     Sample sample(Vec2f u) const noexcept;
+    /// The same for sixteen points; lanes that are not wanted may hold anything finite.
+    void sample(const SamplePairs& u, SamplePairs& uv, float (&pdf)[kLanes]) const noexcept;
     float pdf(Vec2f uv) const noexcept;
     /// Mean weight; 0 means that nothing can be sampled.
     double mean() const noexcept { return mean_; }
@@ -60,13 +65,28 @@ public:
     std::size_t bytes() const noexcept { return (rows_.size() + cells_.size()) * sizeof(float); }
 
 private:
+    template <int N>
+    void invert(const float (&ux)[N], const float (&uy)[N], float (&x)[N], float (&y)[N],
+                float (&pdf)[N]) const noexcept;
+
     int width_ = 0, height_ = 0;
     double mean_ = 0;
     std::vector<float> rows_;   // height_ + 1 cumulative
     std::vector<float> cells_;  // per row width_ + 1 cumulative
-    // Where the search in a cumulative starts for each n-th of u. Chen & Asau, "On Generating
-    // Random Variates from an Empirical Distribution", AIIE Transactions 6(2), 1974.
-    std::vector<std::int32_t> row_guide_, cell_guide_;
 };
+
+// In the header: choosing a light is one of the loop's leaves. Branch-free: which light it will be
+// is what no predictor can know.
+inline AliasTable::Pick AliasTable::sample(float u) const noexcept {
+    const float scaled = u * count_;
+    const auto i = static_cast<std::uint32_t>(static_cast<int>(std::min(scaled, count_ - 1.0f)));
+    const float within = std::min(scaled - static_cast<float>(static_cast<int>(i)), 0x1.fffffep-1f);
+    const Cell& cell = cells_[i];
+    const bool own = within < cell.keep;
+    const std::uint32_t index = own ? i : cell.alias;
+    const float over = own ? within : within - cell.keep;
+    const float width = own ? cell.keep : 1.0f - cell.keep;
+    return {index, cells_[index].probability, std::min(over / width, 0x1.fffffep-1f)};
+}
 
 }  // namespace tessera

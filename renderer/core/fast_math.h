@@ -51,8 +51,7 @@ inline float acos_poly(float x) {
 inline float atan2_turn(float y, float x) {
     const float ax = std::fabs(x), ay = std::fabs(y);
     const float big = std::max(ax, ay);
-    if (!(big > 0.0f)) return 0.0f;
-    const float z = std::min(ax, ay) / big, z2 = z * z;
+    const float z = big > 0.0f ? std::min(ax, ay) / big : 0.0f, z2 = z * z;
     float p = 0.0028662257f;
     p = p * z2 - 0.0161657367f;
     p = p * z2 + 0.0429096138f;

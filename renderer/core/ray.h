@@ -2,6 +2,7 @@
 // Rays and hits: one, and sixteen at a time in the layout that Embree's packets have.
 
 #include <cstdint>
+#include <type_traits>
 
 #include "renderer/core/vec.h"
 
@@ -63,6 +64,23 @@ struct alignas(64) HitPacket {
     Hit hit(int lane) const {
         return {prim[lane], geom[lane], inst[lane], u[lane], v[lane], ray.t_max[lane]};
     }
+};
+
+/// A value per lane, not there until it is written: what a block never reads it need not clear.
+template <class T>
+class Lanes {
+public:
+    static_assert(std::is_trivially_destructible_v<T>);
+    Lanes() {}
+    T& operator[](int lane) { return at_[lane]; }
+    const T& operator[](int lane) const { return at_[lane]; }
+    using Array = T[kLanes];
+    Array& array() { return at_; }
+
+private:
+    union {
+        T at_[kLanes];
+    };
 };
 
 /// One bit per lane.

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "renderer/core/affine.h"
 #include "renderer/core/vec.h"
 
 namespace tessera {
@@ -22,6 +23,17 @@ constexpr float gamma_bound(int n) {
 }
 
 inline constexpr float kSafety = 2.0f;
+
+/// Error of a point that a map takes from its shape's space into the scene's (PBRT 4e, eq. 6.29
+/// ff). Embree takes the ray into the shape's space; what it rounds there comes back grown by the
+/// map's condition.
+inline Vec3f error_in_place(const Affinef& m, float condition, Vec3f p, Vec3f error) {
+    const Vec3f magnitude = abs(m.x) * std::fabs(p.x) + abs(m.y) * std::fabs(p.y) +
+                            abs(m.z) * std::fabs(p.z) + abs(m.p);
+    const Vec3f carried = abs(m.x) * error.x + abs(m.y) * error.y + abs(m.z) * error.z;
+    return carried * (1.0f + gamma_bound(3)) + magnitude * gamma_bound(4) +
+           Vec3f(max_component(magnitude) * condition * gamma_bound(2));
+}
 
 /// Next float away from (up) or toward negative infinity. Finite input, not NaN.
 inline float next_up(float v) {
@@ -46,8 +58,10 @@ inline Vec3f offset_origin(Vec3f p, Vec3f error, Vec3f ng, Vec3f w) {
 /// spare.
 inline bool traceable(Vec3f o, Vec3f d) {
     constexpr float kLimit = 1e18f;
-    const float m = std::max(max_component(abs(o)), max_component(abs(d)));
-    return is_finite(o) && is_finite(d) && m <= kLimit && length2(d) > 0.0f;
+    // A sum, not a maximum: it hands a NaN on.
+    const float m = (std::abs(o.x) + std::abs(o.y) + std::abs(o.z)) +
+                    (std::abs(d.x) + std::abs(d.y) + std::abs(d.z));
+    return m <= kLimit && length2(d) > 0.0f;
 }
 
 }  // namespace tessera

@@ -19,27 +19,22 @@ Corners corners_of(const Mesh& mesh, std::uint32_t face, float u, float v) {
     return {first + w.a, first + w.b, first + w.c, w.wa, w.wb, w.wc};
 }
 
-// Moves a point's data from the shape's space to the scene's, with the error that the map adds
-// (PBRT 4e, eq. 6.29 ff).
-void to_world(const Placement& placed, SurfacePoint& s) {
+// What every point has. Apart from SurfacePoint, so that it lives in registers until it is done.
+struct Point {
+    Vec3f p, p_error, ng, ns;
+};
+
+// From the shape's space to the scene's.
+inline Point to_world(const Placement& placed, const Point& at) {
     const Affinef& m = placed.to_world;
-    const Vec3f p = s.p;
-    s.p = m.point(p);
-    const Vec3f magnitude = abs(m.x) * std::fabs(p.x) + abs(m.y) * std::fabs(p.y) +
-                            abs(m.z) * std::fabs(p.z) + abs(m.p);
-    const Vec3f carried = abs(m.x) * s.p_error.x + abs(m.y) * s.p_error.y + abs(m.z) * s.p_error.z;
-    // Embree takes the ray into the shape's space; what it rounds there comes back grown by the
-    // map's condition.
-    s.p_error = carried * (1.0f + gamma_bound(3)) + magnitude * gamma_bound(4) +
-                Vec3f(max_component(magnitude) * placed.condition * gamma_bound(2));
     // Normals by the cofactors, their sign kept outward under a mirror.
     // Scaled first: the products of a huge map would overflow.
     const float scale = 1.0f / max_component(max(abs(m.x), max(abs(m.y), abs(m.z))));
     const Vec3f x = m.x * scale, y = m.y * scale, z = m.z * scale;
     const Affinef cofactor(cross(y, z), cross(z, x), cross(x, y), {});
     const float sign = dot(x, cofactor.x) < 0.0f ? -1.0f : 1.0f;
-    s.ng = normalize(cofactor.vector(s.ng)) * sign;
-    s.ns = normalize(cofactor.vector(s.ns)) * sign;
+    return {m.point(at.p), error_in_place(m, placed.condition, at.p, at.p_error),
+            normalize(cofactor.vector(at.ng)) * sign, normalize(cofactor.vector(at.ns)) * sign};
 }
 
 void texture_frame_to_world(const Affinef& m, SurfacePoint& s) {
@@ -49,33 +44,34 @@ void texture_frame_to_world(const Affinef& m, SurfacePoint& s) {
     s.uv_per_length = scale > 0.0f ? s.uv_per_length / scale : 0.0f;
 }
 
-void mesh_point(const Mesh& mesh, std::uint32_t face, const Hit& hit, bool colors,
-                SurfacePoint& s) {
+inline Point mesh_point(const Mesh& mesh, std::uint32_t face, const Hit& hit, bool colors,
+                        Color& vertex_color) {
     const Corners k = corners_of(mesh, face, hit.u, hit.v);
     const std::uint32_t ia = mesh.position_index[k.a], ib = mesh.position_index[k.b],
                         ic = mesh.position_index[k.c];
     const Vec3f a = mesh.positions[ia], b = mesh.positions[ib], c = mesh.positions[ic];
-    s.p = a * k.wa + b * k.wb + c * k.wc;
+    const Vec3f p = a * k.wa + b * k.wb + c * k.wc;
     // The rounding of the sum (PBRT 4e, eq. 6.24), and that of Embree's plane test, whose products
     // are of differences between the vertices and the ray's origin: as large as the face, whatever
     // the plane.
     const Vec3f ab = b - a, ac = c - a;
     const float reach = max_component(abs(ab) + abs(ac));
-    s.p_error = (abs(a * k.wa) + abs(b * k.wb) + abs(c * k.wc)) * gamma_bound(7) +
-                Vec3f(reach * gamma_bound(3));
+    const Vec3f error = (abs(a * k.wa) + abs(b * k.wb) + abs(c * k.wc)) * gamma_bound(7) +
+                        Vec3f(reach * gamma_bound(3));
     const Vec3f normal = cross(ab, ac);
-    s.ng = normal * (1.0f / std::sqrt(length2(normal)));
-    s.ns = s.ng;
+    const Vec3f ng = normal * (1.0f / std::sqrt(length2(normal)));
+    Vec3f ns = ng;
     if (!mesh.normals.empty()) {
         const auto& index = mesh.normal_index.empty() ? mesh.position_index : mesh.normal_index;
         const Vec3f n = mesh.normals[index[k.a]] * k.wa + mesh.normals[index[k.b]] * k.wb +
                         mesh.normals[index[k.c]] * k.wc;
         const float l2 = length2(n);
-        if (l2 > 1e-12f) s.ns = n / std::sqrt(l2);
+        if (l2 > 1e-12f) ns = n / std::sqrt(l2);
     }
     if (colors && !mesh.colors.empty()) {
-        s.vertex_color = mesh.colors[ia] * k.wa + mesh.colors[ib] * k.wb + mesh.colors[ic] * k.wc;
+        vertex_color = mesh.colors[ia] * k.wa + mesh.colors[ib] * k.wb + mesh.colors[ic] * k.wc;
     }
+    return {p, error, ng, ns};
 }
 
 void mesh_texture_frame(const Mesh& mesh, const Hit& hit, SurfacePoint& s) {
@@ -95,7 +91,7 @@ void mesh_texture_frame(const Mesh& mesh, const Hit& hit, SurfacePoint& s) {
 }
 
 // Embree solves the sphere in float; its t only says which of the two roots was meant.
-void sphere_point(const Sphere& sphere, const Ray& local, float t, SurfacePoint& s) {
+Point sphere_point(const Sphere& sphere, const Ray& local, float t, SurfacePoint& s) {
     const Vec3d d(local.d), oc = Vec3d(local.o) - Vec3d(sphere.center);
     const double r = static_cast<double>(sphere.radius), a = length2(d), b = dot(oc, d);
     const Vec3d closest =
@@ -105,30 +101,28 @@ void sphere_point(const Sphere& sphere, const Ray& local, float t, SurfacePoint&
     const double root = static_cast<double>(t) < middle ? middle - reach : middle + reach;
     Vec3d n = oc + d * root;
     n = n * (1.0 / length(n));
-    s.ng = s.ns = Vec3f(n);
-    s.p = Vec3f(Vec3d(sphere.center) + n * r);
-    // Embree's own float solution is good to a few roundings of centre and radius.
-    s.p_error = (abs(sphere.center) + Vec3f(sphere.radius)) * gamma_bound(16);
     const double turn = std::atan2(n.x, n.z) / (2.0 * 3.14159265358979323846);
     s.uv = {static_cast<float>(turn < 0 ? turn + 1 : turn),
             static_cast<float>(std::acos(std::max(-1.0, std::min(1.0, -n.y))) /
                                3.14159265358979323846)};
     s.dpdu = Vec3f(Vec3d{n.z, 0, -n.x} * (2.0 * 3.14159265358979323846 * r));
     s.uv_per_length = 1.0f / (kPi * sphere.radius);
+    // Embree's own float solution is good to a few roundings of centre and radius.
+    return {Vec3f(Vec3d(sphere.center) + n * r),
+            (abs(sphere.center) + Vec3f(sphere.radius)) * gamma_bound(16), Vec3f(n), Vec3f(n)};
 }
 
-void disc_point(const Disc& disc, const Ray& local, SurfacePoint& s) {
+Point disc_point(const Disc& disc, const Ray& local, SurfacePoint& s) {
     const Vec3d n(disc.normal), d(local.d), co = Vec3d(disc.center) - Vec3d(local.o);
     const Vec3d p = Vec3d(local.o) + d * (dot(co, n) / dot(d, n));
-    s.p = Vec3f(p);
-    s.ng = s.ns = disc.normal;
-    s.p_error = abs(disc.center) * gamma_bound(8) + Vec3f(disc.radius * gamma_bound(8));
     const Frame frame(disc.normal);
     const Vec3f q = Vec3f(p - Vec3d(disc.center));
     s.uv = {0.5f + 0.5f * dot(q, frame.s) / disc.radius,
             0.5f + 0.5f * dot(q, frame.t) / disc.radius};
     s.dpdu = frame.s * (2.0f * disc.radius);
     s.uv_per_length = 0.5f / disc.radius;
+    return {Vec3f(p), abs(disc.center) * gamma_bound(8) + Vec3f(disc.radius * gamma_bound(8)),
+            disc.normal, disc.normal};
 }
 
 // The ray in the space of an instanced shape, in double.
@@ -145,24 +139,28 @@ SurfacePoint surface_point(const Geometry& geometry, const HitTarget& target, co
     const Placement& placed = geometry.placements[target.placement];
     s.placement = target.placement;
     s.light = placed.light;
+    Point at;
     if (placed.kind == PlacedKind::mesh) {
         const Mesh& mesh = geometry.meshes[placed.shape];
         s.face = mesh.parts[target.part].first_face + hit.prim;
         s.material = mesh.materials[mesh.material_slot(s.face)];
-        mesh_point(mesh, s.face, hit, colors, s);
+        at = mesh_point(mesh, s.face, hit, colors, s.vertex_color);
     } else {
         const Ray local = placed.instanced ? to_local(placed.to_world, ray) : ray;
         if (placed.kind == PlacedKind::sphere) {
-            sphere_point(geometry.spheres[placed.shape], local, hit.t, s);
+            at = sphere_point(geometry.spheres[placed.shape], local, hit.t, s);
             s.material = geometry.spheres[placed.shape].material;
         } else {
-            disc_point(geometry.discs[placed.shape], local, s);
+            at = disc_point(geometry.discs[placed.shape], local, s);
             s.material = geometry.discs[placed.shape].material;
         }
     }
     if (placed.material >= 0) s.material = placed.material;
-    if (placed.instanced) to_world(placed, s);
-    if (dot(s.ns, s.ng) < 0.0f) s.ns = -s.ns;
+    if (placed.instanced) at = to_world(placed, at);
+    s.p = at.p;
+    s.p_error = at.p_error;
+    s.ng = at.ng;
+    s.ns = dot(at.ns, at.ng) < 0.0f ? -at.ns : at.ns;
     return s;
 }
 

@@ -40,4 +40,14 @@ void seed_block(BlockJob& job, std::uint64_t seed) noexcept {
         job.seeds[lane] = pixel_seed(lane_x(job, lane), lane_y(job, lane), seed);
 }
 
+void film_points(const BlockJob& job, SamplePairs& out) noexcept {
+    SamplePairs u;
+    sample_pairs(job.seeds, job.index, dim::kFilter, u);
+    for (int lane = 0; lane < kLanes; ++lane) {
+        const Vec2f offset = job.filter->offset(u.at(lane));
+        out.x[lane] = static_cast<float>(lane_x(job, lane)) + 0.5f + offset.x;
+        out.y[lane] = static_cast<float>(lane_y(job, lane)) + 0.5f + offset.y;
+    }
+}
+
 }  // namespace tessera

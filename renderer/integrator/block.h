@@ -7,6 +7,7 @@
 
 #include "renderer/api/render.h"
 #include "renderer/core/ray.h"
+#include "renderer/core/sampler.h"
 #include "renderer/film/film.h"
 #include "renderer/film/filter.h"
 #include "renderer/scene/scene.h"
@@ -54,6 +55,9 @@ BlockKernel find_kernel(Integrator integrator, std::string_view name);
 
 /// Seeds of a block's pixels.
 void seed_block(BlockJob& job, std::uint64_t seed) noexcept;
+
+/// Where the samples of all lanes lie on the film, in pixels.
+void film_points(const BlockJob& job, SamplePairs& out) noexcept;
 
 /// Lanes of the block at (x, y) whose pixels lie in the window.
 LaneMask lanes_inside(const PixelWindow& window, int x, int y) noexcept;

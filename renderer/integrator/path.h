@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <new>
+#include <type_traits>
 
 #include "renderer/core/robust.h"
 #include "renderer/core/sampler.h"
@@ -30,58 +32,58 @@ public:
         start_paths();
         for (std::uint32_t depth = 0; alive_ != 0; ++depth) {
             intersect(depth);
+            escape(depth);
             draw_samples(depth);
-            LaneMask next = 0;
-            shadow_lanes_ = 0;
-            for (LaneMask m = alive_; m != 0; m &= m - 1) {
-                const int lane = std::countr_zero(m);
-                if (shade(lane, depth)) next |= 1u << lane;
-            }
+            each(alive_, [&](int i) { arrive(i, depth); });
+            each(alive_, [&](int i) { find_lobes(i); });
+            sample_lights();
+            each(alive_, [&](int i) { bounce(i, depth); });
             occlude(depth);
-            alive_ = next;
         }
         finish();
     }
 
 private:
-    struct Lane {
-        Ray ray;
-        Color throughput{1.0f};
-        Vec3f from;          // vertex that sent the ray: where its pdf was taken
-        float bsdf_pdf = 0;  // of the ray's direction; 0: light sampling could not have made it
-        float cone_width = 0, cone_spread = 0;
-        float eta_scale = 1;  // undoes radiance scaling for the roulette
+    // Calls f(lane) for every lane of the mask as it is now; f may take lanes out of `alive_`.
+    template <class Function>
+    static void each(LaneMask lanes, Function f) {
+        for (; lanes != 0; lanes &= lanes - 1) f(std::countr_zero(lanes));
+    }
+    // What f() returns, made where it is kept: a copy would wait for its parts.
+    template <class T, class Function>
+    static void make(T& place, Function f) {
+        static_assert(std::is_trivially_destructible_v<T>);
+        new (&place) T(f());
+    }
+    void stop(int i) noexcept { alive_ &= ~(1u << i); }
+
+    struct PathDepth {
         std::uint16_t diffuse = 0, glossy = 0, transmission = 0;
         bool last = false;  // the ray may still find light, nothing more
         bool layers_done = false;
-        // Light found at this vertex, waiting for its shadow ray.
-        Color pending{0.0f};
     };
 
     // ---- camera
     // -------------------------------------------------------------------------------------
     void start_paths() noexcept {
         SamplePairs film, lens;
-        sample_pairs(job_.seeds, job_.index, dim::kFilter, film);
+        film_points(job_, film);
         if constexpr (F.lens) sample_pairs(job_.seeds, job_.index, dim::kLens, lens);
-        for (LaneMask m = job_.lanes; m != 0; m &= m - 1) {
-            const int i = std::countr_zero(m);
+        const Camera& camera = scene_.camera();
+        camera.rays(film, lens, packet_.ray);
+        each(job_.lanes, [&](int i) {
             out_[i] = PathSample{};
-            Lane& lane = lanes_[i];
-            const Vec2f offset = job_.filter->offset(film.at(i));
-            const Vec2f at{static_cast<float>(lane_x(job_, i)) + 0.5f + offset.x,
-                           static_cast<float>(lane_y(job_, i)) + 0.5f + offset.y};
-            const CameraRay ray = scene_.camera().ray(at, F.lens ? lens.at(i) : Vec2f{0.5f, 0.5f});
-            lane.ray = ray.ray;
-            lane.cone_width = ray.cone_width;
-            lane.cone_spread = ray.cone_spread;
-            lane.layers_done = !job_.layers;
-            if (traceable(lane.ray.o, lane.ray.d)) {
-                alive_ |= 1u << i;
-            } else {
-                invalid(InvalidCause::camera_ray, i);
-            }
-        }
+            ray_[i] = packet_.ray.get(i);
+            throughput_[i] = Color(1.0f);
+            bsdf_pdf_[i] = 0.0f;
+            eta_scale_[i] = 1.0f;
+            cone_width_[i] = camera.cone_width();
+            cone_spread_[i] = camera.cone_spread();
+            depth_[i] = {};
+            depth_[i].layers_done = !job_.layers;
+            if (!traceable(ray_[i].o, ray_[i].d)) return invalid(InvalidCause::camera_ray, i);
+            alive_ |= 1u << i;
+        });
         counters_.samples += static_cast<std::uint64_t>(std::popcount(job_.lanes));
     }
 
@@ -94,36 +96,49 @@ private:
         (depth == 0 ? counters_.rays.camera : counters_.rays.bounce) += count;
         ray_seeds(2 * depth, seeds_);
         if (depth == 0) {
-            for (LaneMask m = alive_; m != 0; m &= m - 1) {
-                const int i = std::countr_zero(m);
-                packet_.ray.set(i, lanes_[i].ray);
-            }
             if (job_.log) job_.log->packet(packet_.ray, alive_, seeds_, false);
             scene_.accel().intersect(packet_, alive_, seeds_);
-            for (LaneMask m = alive_; m != 0; m &= m - 1) {
-                const int i = std::countr_zero(m);
-                hits_[i] = packet_.hit(i);
-                arrive(i);
-            }
+            each(alive_, [&](int i) {
+                hit_[i] = packet_.hit(i);
+                ask_for_indices(i);
+            });
         } else {
-            for (LaneMask m = alive_; m != 0; m &= m - 1) {
-                const int i = std::countr_zero(m);
-                if (job_.log) job_.log->single(lanes_[i].ray, seeds_[i], false);
-                scene_.accel().intersect(lanes_[i].ray, seeds_[i], hits_[i]);
-                arrive(i);
+            each(alive_, [&](int i) {
+                if (job_.log) job_.log->single(ray_[i], seeds_[i], false);
+                scene_.accel().intersect(ray_[i], seeds_[i], hit_[i]);
+                ask_for_indices(i);
+            });
+        }
+        escaped_ = 0;
+        each(alive_, [&](int i) {
+            if (hit_[i].valid()) {
+                prefetch_vertices(scene_.geometry(), target_[i], hit_[i]);
+            } else {
+                escaped_ |= 1u << i;
             }
-        }
-        for (LaneMask m = alive_; m != 0; m &= m - 1) {
-            const int i = std::countr_zero(m);
-            if (hits_[i].valid()) prefetch_vertices(scene_.geometry(), targets_[i], hits_[i]);
-        }
+        });
+        alive_ &= ~escaped_;
     }
 
-    void arrive(int i) noexcept {
-        const Hit& hit = hits_[i];
-        if (!hit.valid()) return;
-        targets_[i] = scene_.accel().target(hit);
-        prefetch_indices(scene_.geometry(), targets_[i], hit);
+    void ask_for_indices(int i) noexcept {
+        if (!hit_[i].valid()) return;
+        target_[i] = scene_.accel().target(hit_[i]);
+        prefetch_indices(scene_.geometry(), target_[i], hit_[i]);
+    }
+
+    // ---- escape: what the rays that hit nothing see
+    // --------------------------------------------------
+    void escape(std::uint32_t depth) noexcept {
+        if (escaped_ == 0) return;
+        Vec3f d[kLanes];
+        Color seen[kLanes];
+        for (int i = 0; i < kLanes; ++i) d[i] = ray_[i].d;
+        scene_.lights().escaped(escaped_, d, bsdf_pdf_, depth == 0, seen);
+        each(escaped_, [&](int i) {
+            out_[i].radiance += throughput_[i] * seen[i];
+            // What a mirror shows of the surroundings counts as white.
+            if (!depth_[i].layers_done && depth > 0) out_[i].albedo = throughput_[i];
+        });
     }
 
     void draw_samples(std::uint32_t depth) noexcept {
@@ -140,69 +155,77 @@ private:
     void draw(std::uint32_t pair, SamplePairs& out) noexcept {
         constexpr int kFew = 3;
         if (std::popcount(alive_) > kFew) return sample_pairs(job_.seeds, job_.index, pair, out);
-        for (LaneMask m = alive_; m != 0; m &= m - 1) {
-            const int i = std::countr_zero(m);
+        each(alive_, [&](int i) {
             const Vec2f p = sample_pair(job_.seeds[i], job_.index, pair);
             out.x[i] = p.x;
             out.y[i] = p.y;
-        }
+        });
     }
 
-    // ---- shade: returns whether the path goes on
-    // ----------------------------------------------------
-    bool shade(int i, std::uint32_t depth) noexcept {
-        Lane& lane = lanes_[i];
-        const Vec3f d = lane.ray.d;
-        if (!hits_[i].valid()) {
-            out_[i].radiance +=
-                lane.throughput * scene_.lights().escaped(d, lane.bsdf_pdf, depth == 0);
-            // What a mirror shows of the surroundings counts as white.
-            if (!lane.layers_done && depth > 0) out_[i].albedo = lane.throughput;
-            return false;
-        }
-        SurfacePoint s =
-            surface_point(scene_.geometry(), targets_[i], hits_[i], lane.ray, F.vertex_colors);
+    // ---- arrive: the surface, and the light it sends of itself
+    // ----------------------------------------
+    void arrive(int i, std::uint32_t depth) noexcept {
+        const Vec3f d = ray_[i].d;
+        make(surface_[i], [&] {
+            return surface_point(scene_.geometry(), target_[i], hit_[i], ray_[i], F.vertex_colors);
+        });
+        SurfacePoint& s = surface_[i];
         if (!is_finite(s.p) || !is_finite(s.ng) || !is_finite(s.ns) || !(length2(s.ng) > 0.5f)) {
             invalid(InvalidCause::hit, i);
-            return false;
+            return stop(i);
         }
-        lane.cone_width += lane.cone_spread * dot(s.p - lane.ray.o, d);
+        cone_width_[i] += cone_spread_[i] * dot(s.p - ray_[i].o, d);
         const ShaderProgram* program = s.material >= 0 ? &scene_.program(s.material) : nullptr;
-        const ShadeInput in = shade_input<F>(scene_, program, hits_[i], lane.cone_width, d, s);
+        shade_in_[i] = shade_input<F>(scene_, program, hit_[i], cone_width_[i], d, s);
         if (depth == 0) note_first_hit(i, s);
 
         // Emission, weighed against light sampling having found it.
         if (!program || program->facts().emissive) {
-            const Color e = program ? program->emission(in, scene_.textures())
+            const Color e = program ? program->emission(shade_in_[i], scene_.textures())
                                     : light_radiance(scene_.lights()[s.light], d, s.ng);
             float weight = 1.0f;
-            if (lane.bsdf_pdf > 0.0f && s.light >= 0) {
-                weight = mis_power(lane.bsdf_pdf, scene_.lights().pdf(s.light, {lane.from}, d, s.p,
-                                                                      s.ng, s.material));
+            if (bsdf_pdf_[i] > 0.0f && s.light >= 0) {
+                weight = mis_power(bsdf_pdf_[i], scene_.lights().pdf(s.light, {from_[i].p}, d, s.p,
+                                                                     s.ng, s.material));
             }
-            out_[i].radiance += lane.throughput * e * weight;
+            out_[i].radiance += throughput_[i] * e * weight;
         }
-        if (!program || lane.last) return false;
+        if (!program || depth_[i].last) stop(i);
+    }
 
-        const FacingFrame frame = facing_frame<F>(s, *program, in, scene_.textures(), -d);
-        const Lobes<F> lobes = make_lobes<F>(*program, in, scene_.textures(), frame);
-        if (!lane.layers_done) note_layers(i, lobes, frame);
-        if (lobes.has_extended_part() && scene_.lights().sampled())
-            sample_lights(i, s, frame, lobes);
-        return bounce(i, depth, s, frame, lobes);
+    void find_lobes(int i) noexcept {
+        const SurfacePoint& s = surface_[i];
+        const ShaderProgram& program = scene_.program(s.material);
+        make(frame_[i], [&] {
+            return facing_frame<F>(s, program, shade_in_[i], scene_.textures(), -ray_[i].d);
+        });
+        make(lobes_[i],
+             [&] { return make_lobes<F>(program, shade_in_[i], scene_.textures(), frame_[i]); });
+        from_[i] = {s.p};
+        if (!depth_[i].layers_done) note_layers(i);
     }
 
     // ---- next-event estimation
     // ----------------------------------------------------------------------
-    void sample_lights(int i, const SurfacePoint& s, const FacingFrame& frame,
-                       const Lobes<F>& lobes) noexcept {
-        Lane& lane = lanes_[i];
-        LightSample light;
-        if (!scene_.lights().sample({s.p}, choice_u_.x[i], light_u_.at(i), light)) return;
+    void sample_lights() noexcept {
+        shadow_lanes_ = 0;
+        if (!scene_.lights().sampled()) return;
+        LaneMask lanes = 0;
+        each(alive_,
+             [&](int i) { lanes |= static_cast<LaneMask>(lobes_[i].has_extended_part()) << i; });
+        if (lanes == 0) return;
+        lanes = scene_.lights().sample(lanes, from_.array(), choice_u_.x, light_u_, light_.array());
+        each(lanes, [&](int i) { weigh_light(i); });
+    }
+
+    void weigh_light(int i) noexcept {
+        const SurfacePoint& s = surface_[i];
+        const FacingFrame& frame = frame_[i];
+        LightSample& light = light_[i];
         const Vec3f wi = frame.shading.to_local(light.wi);
         if (!same_side(light.wi, wi, frame.ng)) return;
         if (!F.transmission && wi.z <= 0.0f) return;
-        const LobeEval e = lobes.eval(frame.wo, wi);
+        const LobeEval e = lobes_[i].eval(frame.wo, wi);
         if (!(max_component(e.f) > 0.0f)) return;
         if (light.material >= 0) {
             ShadeInput in;
@@ -210,19 +233,16 @@ private:
             light.radiance = scene_.program(light.material).visible_emission(in, scene_.textures());
         }
         const float weight = light.delta ? 1.0f : mis_power(light.pdf, e.pdf);
-        const Color c = lane.throughput * e.f * light.radiance * (weight / light.pdf);
+        const Color c = throughput_[i] * e.f * light.radiance * (weight / light.pdf);
         if (!(max_component(c) > 0.0f)) return;
         Ray& ray = shadow_[i];
-        ray.o = offset_origin(s.p, s.p_error, s.ng, light.wi);
-        if (light.infinite) {
-            ray.d = light.wi;
-            ray.t_max = kInfinity;
-        } else {
+        ray = Ray{offset_origin(s.p, s.p_error, s.ng, light.wi), light.wi};
+        if (!light.infinite) {
             ray.d = offset_origin(light.p, light.p_error, light.n, -light.wi) - ray.o;
             ray.t_max = 0x1.fffffcp-1f;  // the end itself is not in the way
         }
         if (!traceable(ray.o, ray.d)) return invalid(InvalidCause::shadow_ray, i);
-        lane.pending = c;
+        pending_[i] = c;
         shadow_lanes_ |= 1u << i;
     }
 
@@ -235,72 +255,64 @@ private:
         LaneMask blocked = 0;
         if (depth == 0) {
             RayPacket& rays = packet_.ray;
-            for (LaneMask m = shadow_lanes_; m != 0; m &= m - 1) {
-                const int i = std::countr_zero(m);
-                rays.set(i, shadow_[i]);
-            }
+            each(shadow_lanes_, [&](int i) { rays.set(i, shadow_[i]); });
             if (job_.log) job_.log->packet(rays, shadow_lanes_, seeds_, true);
             blocked = scene_.accel().occluded(rays, shadow_lanes_, seeds_);
         } else {
-            for (LaneMask m = shadow_lanes_; m != 0; m &= m - 1) {
-                const int i = std::countr_zero(m);
+            each(shadow_lanes_, [&](int i) {
                 if (job_.log) job_.log->single(shadow_[i], seeds_[i], true);
                 blocked |= static_cast<LaneMask>(scene_.accel().occluded(shadow_[i], seeds_[i]))
                            << i;
-            }
+            });
         }
-        for (LaneMask m = shadow_lanes_ & ~blocked; m != 0; m &= m - 1) {
-            const int i = std::countr_zero(m);
-            out_[i].radiance += lanes_[i].pending;
-        }
+        each(shadow_lanes_ & ~blocked, [&](int i) { out_[i].radiance += pending_[i]; });
     }
 
-    // ---- bounce
+    // ---- bounce: the path goes on, or stops
     // -------------------------------------------------------------------------------------
-    bool bounce(int i, std::uint32_t depth, const SurfacePoint& s, const FacingFrame& frame,
-                const Lobes<F>& lobes) noexcept {
-        Lane& lane = lanes_[i];
-        const auto b = lobes.sample(frame.wo, bsdf_u_.at(i), choice_u_.y[i]);
-        if (!b) return false;
-        const Vec3f wi = frame.shading.to_world(b->wi);
-        if (!same_side(wi, b->wi, frame.ng)) return false;
-        // The throughput is kept for the shadow ray's sake in `pending`; from here on it is the
-        // next ray's.
-        lane.throughput *= b->weight;
-        // Behind a mirror or clear glass the albedo is that of what is seen there.
-        if (!b->delta) lane.layers_done = true;
-        if (!lane.layers_done) out_[i].albedo = Color(0.0f);
-        lane.bsdf_pdf = b->pdf;
-        lane.eta_scale *= b->eta * b->eta;
-        if (!(max_component(lane.throughput) > 0.0f)) return false;
+    void bounce(int i, std::uint32_t depth) noexcept {
+        if (!scatter(i, depth)) stop(i);
+    }
 
-        lane.last = depth + 1 > static_cast<std::uint32_t>(settings_.max_depth);
-        switch (b->cls) {
+    bool scatter(int i, std::uint32_t depth) noexcept {
+        const SurfacePoint& s = surface_[i];
+        const FacingFrame& frame = frame_[i];
+        LobeSample b;
+        if (!lobes_[i].sample(frame.wo, bsdf_u_.at(i), choice_u_.y[i], b)) return false;
+        const Vec3f wi = frame.shading.to_world(b.wi);
+        if (!same_side(wi, b.wi, frame.ng)) return false;
+        throughput_[i] *= b.weight;
+        PathDepth& at = depth_[i];
+        // Behind a mirror or clear glass the albedo is that of what is seen there.
+        if (!b.delta) at.layers_done = true;
+        if (!at.layers_done) out_[i].albedo = Color(0.0f);
+        bsdf_pdf_[i] = b.pdf;
+        eta_scale_[i] *= b.eta * b.eta;
+        if (!(max_component(throughput_[i]) > 0.0f)) return false;
+
+        at.last = depth + 1 > static_cast<std::uint32_t>(settings_.max_depth);
+        switch (b.cls) {
             case LobeClass::diffuse:
-                lane.last |= ++lane.diffuse > settings_.max_diffuse_depth;
+                at.last |= ++at.diffuse > settings_.max_diffuse_depth;
                 break;
             case LobeClass::glossy:
-                lane.last |= ++lane.glossy > settings_.max_glossy_depth;
+                at.last |= ++at.glossy > settings_.max_glossy_depth;
                 break;
             case LobeClass::transmission:
-                lane.last |= ++lane.transmission > settings_.max_transmission_depth;
+                at.last |= ++at.transmission > settings_.max_transmission_depth;
                 break;
         }
-        if (lane.last && !scene_.emission_can_be_hit()) return false;
+        if (at.last && !scene_.emission_can_be_hit()) return false;
         if (depth >= static_cast<std::uint32_t>(settings_.min_depth)) {
-            const float survive = std::min(max_component(lane.throughput) * lane.eta_scale, 1.0f);
+            const float survive = std::min(max_component(throughput_[i]) * eta_scale_[i], 1.0f);
             if (survive < 1.0f) {
                 if (roulette_u_.x[i] >= survive) return false;
-                lane.throughput *= 1.0f / survive;
+                throughput_[i] *= 1.0f / survive;
             }
         }
-        lane.from = s.p;
-        lane.ray.o = offset_origin(s.p, s.p_error, s.ng, wi);
-        lane.ray.d = wi;
-        lane.ray.t_max = kInfinity;
-        lane.ray.mask = kOtherRays;
-        lane.cone_spread = std::max(lane.cone_spread, b->spread);
-        if (!traceable(lane.ray.o, lane.ray.d)) {
+        ray_[i] = {offset_origin(s.p, s.p_error, s.ng, wi), wi, kInfinity, kOtherRays};
+        cone_spread_[i] = std::max(cone_spread_[i], b.spread);
+        if (!traceable(ray_[i].o, ray_[i].d)) {
             invalid(InvalidCause::bounce_ray, i);
             return false;
         }
@@ -316,13 +328,12 @@ private:
         o.hit = true;
         o.z = dot(s.p - scene_.camera().position(), scene_.camera().forward());
         o.p = Vec3f(Vec3d(s.p) + scene_.origin());
-        o.n = dot(s.ns, lanes_[i].ray.d) <= 0.0f ? s.ns : -s.ns;
+        o.n = dot(s.ns, ray_[i].d) <= 0.0f ? s.ns : -s.ns;
     }
 
     // Albedo of the first surface that is not a mirror or clear glass, as denoisers want it.
-    void note_layers(int i, const Lobes<F>& lobes, const FacingFrame& frame) noexcept {
-        Lane& lane = lanes_[i];
-        out_[i].albedo = lane.throughput * lobes.albedo(frame.wo);
+    void note_layers(int i) noexcept {
+        out_[i].albedo = throughput_[i] * lobes_[i].albedo(frame_[i].wo);
     }
 
     void invalid(InvalidCause cause, int i) noexcept {
@@ -351,14 +362,30 @@ private:
     const RenderDesc& settings_;
     BlockSamples& out_;
     Counters& counters_;
-    LaneMask alive_ = 0, shadow_lanes_ = 0;
-    HitPacket packet_;
-    Lane lanes_[kLanes];
-    Ray shadow_[kLanes];
-    Hit hits_[kLanes];
-    HitTarget targets_[kLanes];
-    SamplePairs light_u_, choice_u_, bsdf_u_, roulette_u_;
+    LaneMask alive_ = 0, escaped_ = 0, shadow_lanes_ = 0;
     std::uint32_t seeds_[kLanes];
+    SamplePairs light_u_, choice_u_, bsdf_u_, roulette_u_;
+
+    // The paths.
+    Lanes<Ray> ray_;
+    Lanes<Color> throughput_;
+    Lanes<LightReference> from_;  // the vertex that sent the ray: where its pdf was taken
+    float bsdf_pdf_[kLanes];      // of its direction; 0: light sampling could not have made it
+    float cone_width_[kLanes], cone_spread_[kLanes];
+    float eta_scale_[kLanes];  // undoes radiance scaling for the roulette
+    Lanes<PathDepth> depth_;
+
+    // Their present vertices.
+    Lanes<Hit> hit_;
+    Lanes<HitTarget> target_;
+    Lanes<SurfacePoint> surface_;
+    Lanes<ShadeInput> shade_in_;
+    Lanes<FacingFrame> frame_;
+    Lanes<Lobes<F>> lobes_;
+    Lanes<LightSample> light_;
+    Lanes<Ray> shadow_;
+    Lanes<Color> pending_;  // light that waits for its shadow ray
+    HitPacket packet_;
 };
 
 template <Features F>

@@ -14,6 +14,7 @@ namespace tessera {
 /// lobes use. Every operation gives LobeList's bits.
 class DiffuseOnly {
 public:
+    DiffuseOnly() = default;
     explicit DiffuseOnly(Color weight) : weight_(weight) {}
     bool empty() const noexcept { return !(max_component(weight_) > 0.0f); }
     bool has_extended_part() const noexcept { return !empty(); }
@@ -22,16 +23,15 @@ public:
         e.f *= weight_;
         return e;
     }
-    std::optional<LobeSample> sample(Vec3f wo, Vec2f u, float choice) const noexcept {
-        if (empty()) return std::nullopt;
-        auto s = DiffuseLobe{}.sample(wo, u, choice);
-        if (s) s->weight *= weight_;
-        return s;
+    bool sample(Vec3f wo, Vec2f u, float choice, LobeSample& out) const noexcept {
+        if (empty() || !DiffuseLobe{}.sample(wo, u, choice, out)) return false;
+        out.weight *= weight_;
+        return true;
     }
     Color albedo(Vec3f) const noexcept { return weight_; }
 
 private:
-    Color weight_;
+    Color weight_{0.0f};
 };
 
 template <Features F>

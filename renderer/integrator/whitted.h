@@ -59,18 +59,16 @@ private:
 
     void start() noexcept {
         SamplePairs film, lens;
-        sample_pairs(job_.seeds, job_.index, dim::kFilter, film);
+        film_points(job_, film);
         sample_pairs(job_.seeds, job_.index, dim::kLens, lens);
+        const Camera& camera = scene_.camera();
+        camera.rays(film, lens, packet_.ray);
         for (LaneMask m = job_.lanes; m != 0; m &= m - 1) {
             const int i = std::countr_zero(m);
             out_[i] = PathSample{};
             size_[i] = 0;
-            const Vec2f offset = job_.filter->offset(film.at(i));
-            const CameraRay c =
-                scene_.camera().ray({static_cast<float>(lane_x(job_, i)) + 0.5f + offset.x,
-                                     static_cast<float>(lane_y(job_, i)) + 0.5f + offset.y},
-                                    lens.at(i));
-            push(i, {c.ray, Color(1.0f), c.cone_width, c.cone_spread, 0}, InvalidCause::camera_ray);
+            push(i, {packet_.ray.get(i), Color(1.0f), camera.cone_width(), camera.cone_spread(), 0},
+                 InvalidCause::camera_ray);
         }
         counters_.samples += static_cast<std::uint64_t>(std::popcount(job_.lanes));
     }
@@ -109,7 +107,7 @@ private:
         const Hit hit = packet_.hit(i);
         if (!hit.valid()) {
             out_[i].radiance +=
-                node.weight * scene_.lights().escaped(node.ray.d, 0.0f, node.depth == 0);
+                node.weight * scene_.lights().background(node.ray.d, node.depth == 0);
             return;
         }
         Vertex& v = vertex_[i];
@@ -208,12 +206,14 @@ private:
                     child(i, glass->transmitted(v.frame.wo, cos_t), lobe.weight * (1.0f - f));
             } else if (const auto* thin = std::get_if<ThinGlass>(&lobe.model)) {
                 const float r = thin->reflectance(v.frame.wo.z);
-                child(i, *thin->sample(v.frame.wo, {}, -1.0f), lobe.weight * r);
-                child(i, *thin->sample(v.frame.wo, {}, 2.0f), lobe.weight * (1.0f - r));
+                child(i, thin->reflected(v.frame.wo), lobe.weight * r);
+                child(i, thin->transmitted(v.frame.wo), lobe.weight * (1.0f - r));
             } else {
-                const auto s = std::visit(
-                    [&](const auto& m) { return m.sample(v.frame.wo, Vec2f{}, 0.0f); }, lobe.model);
-                if (s) child(i, *s, lobe.weight);
+                LobeSample s;
+                const auto sample = [&](const auto& m) {
+                    return m.sample(v.frame.wo, Vec2f{}, 0.0f, s);
+                };
+                if (std::visit(sample, lobe.model)) child(i, s, lobe.weight);
             }
         }
     }

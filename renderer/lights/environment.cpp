@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "renderer/core/fast_math.h"
+#include "renderer/core/warp.h"
 #include "renderer/lights/light.h"
 
 namespace tessera {
@@ -12,20 +14,32 @@ double luminance_of(Color c) {
            0.0722 * static_cast<double>(c.z);
 }
 
-}  // namespace
-
 // u = 0.5 looks along -z, u grows toward +x; v = 0 is +y. d is a unit vector.
-Vec2f EnvironmentLight::to_uv(Vec3f d) const {
-    const float x = cos_rotate * d.x - sin_rotate * d.z, z = sin_rotate * d.x + cos_rotate * d.z;
+inline Vec2f uv_of(const EnvironmentLight& e, Vec3f d) {
+    const float x = e.cos_rotate * d.x - e.sin_rotate * d.z,
+                z = e.sin_rotate * d.x + e.cos_rotate * d.z;
     return {0.5f + atan2_turn(x, -z), 2.0f * atan2_turn(std::sqrt(x * x + z * z), d.y)};
 }
 
-Vec3f EnvironmentLight::to_direction(Vec2f uv) const {
+inline Vec3f direction_of(const EnvironmentLight& e, Vec2f uv) {
     const SinCos phi = sincos_turn(uv.x), theta = sincos_turn(0.5f * uv.y);
     // phi is measured from u = 0, half a turn away from -z.
     const Vec3f w{-theta.sin * phi.sin, theta.cos, theta.sin * phi.cos};
-    return {cos_rotate * w.x + sin_rotate * w.z, w.y, -sin_rotate * w.x + cos_rotate * w.z};
+    return {e.cos_rotate * w.x + e.sin_rotate * w.z, w.y, -e.sin_rotate * w.x + e.cos_rotate * w.z};
 }
+
+inline float sine_of(Vec3f d) { return std::sqrt(d.x * d.x + d.z * d.z); }
+
+// A table's density per unit square as one per solid angle.
+inline float per_solid_angle(float density, float sin_theta) {
+    return density / (2.0f * kPi * kPi * sin_theta);
+}
+
+}  // namespace
+
+Vec2f EnvironmentLight::to_uv(Vec3f d) const { return uv_of(*this, d); }
+
+Vec3f EnvironmentLight::to_direction(Vec2f uv) const { return direction_of(*this, uv); }
 
 Color EnvironmentLight::texel(Vec2f uv) const {
     const float x = uv.x * static_cast<float>(width) - 0.5f,
@@ -41,13 +55,78 @@ Color EnvironmentLight::texel(Vec2f uv) const {
 }
 
 float EnvironmentLight::density(Vec2f uv, float sin_theta) const {
-    return sin_theta > 0.0f ? table.pdf(uv) / (2.0f * kPi * kPi * sin_theta) : 0.0f;
+    return sin_theta > 0.0f ? per_solid_angle(table.pdf(uv), sin_theta) : 0.0f;
 }
 
 EnvironmentLight::Look EnvironmentLight::look(Vec3f d) const {
     if (width == 0) return {scale, 0.25f * kInvPi};
     const Vec2f uv = to_uv(d);
-    return {texel(uv), density(uv, std::sqrt(d.x * d.x + d.z * d.z))};
+    return {texel(uv), density(uv, sine_of(d))};
+}
+
+void EnvironmentLight::look(LaneMask lanes, const Vec3f (&d)[kLanes], Look (&out)[kLanes]) const {
+    SamplePairs uv;
+    float sine[kLanes];
+    if (width > 0) {
+        // The arithmetic of all lanes, wanted or not: it is vectorised.
+        for (int i = 0; i < kLanes; ++i) {
+            const Vec2f at = uv_of(*this, d[i]);
+            uv.x[i] = at.x, uv.y[i] = at.y;
+            sine[i] = sine_of(d[i]);
+        }
+    }
+    for (LaneMask m = lanes; m != 0; m &= m - 1) {
+        const int i = std::countr_zero(m);
+        out[i] = width == 0 ? Look{scale, 0.25f * kInvPi}
+                            : Look{texel(uv.at(i)), density(uv.at(i), sine[i])};
+    }
+}
+
+bool EnvironmentLight::sample(Vec2f u, LightSample& s) const {
+    s.infinite = true;
+    if (width == 0) {
+        s.wi = warp_sphere(u);
+        s.pdf = 0.25f * kInvPi;
+        s.radiance = scale;
+        return true;
+    }
+    const Distribution2D::Sample t = table.sample(u);
+    s.wi = to_direction(t.uv);
+    const float sin_theta = sine_of(s.wi);
+    s.pdf = sin_theta > 0.0f ? per_solid_angle(t.pdf, sin_theta) : 0.0f;
+    s.radiance = texel(t.uv);
+    return s.pdf > 0.0f;
+}
+
+LaneMask EnvironmentLight::sample(LaneMask lanes, const SamplePairs& u,
+                                  LightSample (&out)[kLanes]) const {
+    LaneMask made = 0;
+    if (width == 0) {
+        for (LaneMask m = lanes; m != 0; m &= m - 1) {
+            const int i = std::countr_zero(m);
+            made |= static_cast<LaneMask>(sample(u.at(i), out[i])) << i;
+        }
+        return made;
+    }
+    SamplePairs uv;
+    float density[kLanes], x[kLanes], y[kLanes], z[kLanes], pdf[kLanes];
+    table.sample(u, uv, density);
+    for (int i = 0; i < kLanes; ++i) {
+        const Vec3f d = direction_of(*this, uv.at(i));
+        x[i] = d.x, y[i] = d.y, z[i] = d.z;
+        const float sin_theta = sine_of(d);
+        pdf[i] = sin_theta > 0.0f ? per_solid_angle(density[i], sin_theta) : 0.0f;
+    }
+    for (LaneMask m = lanes; m != 0; m &= m - 1) {
+        const int i = std::countr_zero(m);
+        LightSample& s = out[i];
+        s.infinite = true;
+        s.wi = {x[i], y[i], z[i]};
+        s.pdf = pdf[i];
+        s.radiance = texel(uv.at(i));
+        made |= static_cast<LaneMask>(pdf[i] > 0.0f) << i;
+    }
+    return made;
 }
 
 EnvironmentLight make_constant_environment(Color radiance, bool camera_visible) {

@@ -63,7 +63,7 @@ bool sample(const DistantLight& l, const LightReference&, Vec2f u, LightSample& 
         s.delta = true;
         return true;
     }
-    s.wi = Frame(l.to_light).to_world(warp_cone(u, l.one_minus_cos));
+    s.wi = l.frame.to_world(warp_cone(u, l.one_minus_cos));
     s.radiance = l.radiance;
     s.pdf = 1.0f / (2.0f * kPi * l.one_minus_cos);
     return true;
@@ -126,31 +126,27 @@ bool sample(const SphereLight& l, const LightReference& ref, Vec2f u, LightSampl
 }
 
 bool sample(const MeshLight& l, const LightReference& ref, Vec2f u, LightSample& s) {
-    const AliasTable::Pick pick = l.pick.sample(u.x);
-    const MeshLight::Triangle& t = l.triangles[pick.index];
+    const AliasTable::Pick pick = l.faces->pick.sample(u.x);
+    const EmissiveFaces::Triangle& t = l.faces->triangles[pick.index];
     const Vec2f b = warp_triangle({pick.remainder, u.y});
     s.material = t.material;
     s.uv = t.ta + t.tab * b.x + t.tac * b.y;
+    Vec3f p = t.a + t.ab * b.x + t.ac * b.y, ab = t.ab, ac = t.ac;
     s.p_error = abs(t.a) * gamma_bound(9) + Vec3f((length(t.ab) + length(t.ac)) * gamma_bound(7));
-    return from_area(ref.p, t.a + t.ab * b.x + t.ac * b.y, normalize(cross(t.ab, t.ac)),
-                     l.density_of(t.material), s);
+    if (l.placed) {
+        s.p_error = error_in_place(l.to_world, l.condition, p, s.p_error);
+        p = l.to_world.point(p);
+        ab = l.to_world.vector(ab);
+        ac = l.to_world.vector(ac);
+    }
+    const Vec3f n = cross(ab, ac);
+    const float twice_area = length(n);
+    if (!(twice_area > 0.0f)) return false;
+    return from_area(ref.p, p, n / twice_area, 2.0f * pick.probability / twice_area, s);
 }
 
 bool sample(const EnvironmentLight& l, const LightReference&, Vec2f u, LightSample& s) {
-    s.infinite = true;
-    if (l.width == 0) {
-        s.wi = warp_sphere(u);
-        s.pdf = 0.25f * kInvPi;
-        s.radiance = l.scale;
-        return true;
-    }
-    const Distribution2D::Sample t = l.table.sample(u);
-    s.wi = l.to_direction(t.uv);
-    const float sin_theta = std::sqrt(s.wi.x * s.wi.x + s.wi.z * s.wi.z);
-    if (!(sin_theta > 0.0f)) return false;
-    s.pdf = t.pdf / (2.0f * kPi * kPi * sin_theta);
-    s.radiance = l.texel(t.uv);
-    return s.pdf > 0.0f;
+    return l.sample(u, s);
 }
 
 }  // namespace
@@ -183,11 +179,17 @@ float SpotLight::falloff(float cos) const {
     return t * t * (3.0f - 2.0f * t);
 }
 
-float MeshLight::density_of(std::int32_t material) const {
-    for (const auto& [m, d] : density) {
-        if (m == material) return d;
+float MeshLight::density_of(std::int32_t material, Vec3f n) const {
+    // The map stretches areas that face n in place by |det| / |M^T n|.
+    const float scale = placed ? length(to_world.transposed(n)) / std::fabs(determinant) : 1.0f;
+    for (const auto& [m, d] : faces->density) {
+        if (m == material) return d * scale;
     }
     return 0.0f;
+}
+
+std::size_t EmissiveFaces::bytes() const {
+    return triangles.capacity() * sizeof(Triangle) + pick.bytes();
 }
 
 bool sample_light(const Light& light, const LightReference& ref, Vec2f u,
@@ -214,7 +216,7 @@ float light_pdf(const Light& light, const LightReference& ref, Vec3f wi, Vec3f p
         return distance2_over_cos(ref.p, p, n, wi) / (kPi * l->radius * l->radius);
     }
     if (const auto* l = std::get_if<MeshLight>(&light)) {
-        return distance2_over_cos(ref.p, p, n, wi) * l->density_of(material);
+        return distance2_over_cos(ref.p, p, n, wi) * l->density_of(material, n);
     }
     return 0.0f;
 }

@@ -8,8 +8,11 @@
 #include <variant>
 #include <vector>
 
+#include "renderer/core/affine.h"
 #include "renderer/core/distribution.h"
 #include "renderer/core/frame.h"
+#include "renderer/core/ray.h"
+#include "renderer/core/sampler.h"
 #include "renderer/core/vec.h"
 
 namespace tessera {
@@ -51,6 +54,7 @@ struct DistantLight {
     float one_minus_cos = 0;  // of the half angle; 0: a delta light
     Color radiance{0.0f};
     bool camera_visible = true;
+    Frame frame{to_light};
 };
 
 struct QuadLight {
@@ -76,8 +80,8 @@ struct SphereLight {
     Color radiance;
 };
 
-/// The emissive faces of one placed mesh; emits from both sides.
-struct MeshLight {
+/// The emissive faces of a mesh in its own space; its instances share them.
+struct EmissiveFaces {
     struct Triangle {
         Vec3f a, ab, ac;
         Vec2f ta, tab, tac;
@@ -86,7 +90,17 @@ struct MeshLight {
     std::vector<Triangle> triangles;
     AliasTable pick;
     std::vector<std::pair<std::int32_t, float>> density;  // material -> pdf per area
-    float density_of(std::int32_t material) const;
+    std::size_t bytes() const;
+};
+
+/// The emissive faces of one placed mesh; emits from both sides.
+struct MeshLight {
+    std::shared_ptr<const EmissiveFaces> faces;
+    bool placed = false;  // by to_world, which can be inverted; else the faces are in place
+    Affinef to_world;
+    float determinant = 1, condition = 1;  // of to_world
+    /// pdf per area in place of a point with normal n on a face of the material.
+    float density_of(std::int32_t material, Vec3f n) const;
 };
 
 /// A lat-long map or a constant all around.
@@ -99,10 +113,15 @@ struct EnvironmentLight {
     bool camera_visible = true;
 
     struct Look {
-        Color radiance;
-        float pdf;  // per solid angle, of sampling the table
+        Color radiance{0.0f};
+        float pdf = 0;  // per solid angle, of sampling the table
     };
     Look look(Vec3f d) const;
+    bool sample(Vec2f u, LightSample& out) const;
+    /// Both ways for sixteen lanes at once, with sample_light's and look's bits. sample returns the
+    /// lanes that got a sample.
+    LaneMask sample(LaneMask lanes, const SamplePairs& u, LightSample (&out)[kLanes]) const;
+    void look(LaneMask lanes, const Vec3f (&d)[kLanes], Look (&out)[kLanes]) const;
     Vec2f to_uv(Vec3f d) const;
     Vec3f to_direction(Vec2f uv) const;
     Color texel(Vec2f uv) const;  // bilinear, scaled

@@ -1,7 +1,9 @@
 #include "renderer/lights/light_set.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <set>
 
 #include "renderer/core/warp.h"
 
@@ -18,19 +20,7 @@ double mean_of(Color c) {
 // nothing of distance.
 constexpr double kFloor = 0.1;
 
-struct Seen {
-    Color radiance{0.0f};
-    float pdf = 0;
-};
-
-Seen seen_along(const Light& light, Vec3f d, bool camera) {
-    if (const auto* e = std::get_if<EnvironmentLight>(&light)) {
-        if (camera && !e->camera_visible) return {};
-        const EnvironmentLight::Look look = e->look(d);
-        return {look.radiance, look.pdf};
-    }
-    const auto& l = std::get<DistantLight>(light);
-    if (camera && !l.camera_visible) return {};
+EnvironmentLight::Look seen_along(const DistantLight& l, Vec3f d) {
     // 1 - cos by the chord: exact for small angles, where the dot product is not.
     const float one_minus_cos = 0.5f * length2(d - l.to_light);
     if (one_minus_cos > l.one_minus_cos) return {};
@@ -64,6 +54,7 @@ LightSet::LightSet(std::vector<Light> lights, const std::vector<double>& powers)
     choice_ = AliasTable(weights);
     sampled_ = alive;
     for (int i = 0; i < size(); ++i) {
+        kinds_.push_back(static_cast<std::uint8_t>(lights_[i].index()));
         const auto* distant = std::get_if<DistantLight>(&lights_[i]);
         if (std::holds_alternative<EnvironmentLight>(lights_[i]) ||
             (distant && distant->one_minus_cos > 0.0f)) {
@@ -78,12 +69,43 @@ LightSet::LightSet(std::vector<Light> lights, const std::vector<double>& powers)
     }
 }
 
-bool LightSet::sample(const LightReference& ref, float u_choice, Vec2f u,
-                      LightSample& out) const noexcept {
-    const AliasTable::Pick pick = choice_.sample(u_choice);
-    if (!(pick.probability > 0.0f) || !sample_light(lights_[pick.index], ref, u, out)) return false;
-    out.pdf *= pick.probability;
-    return true;
+LaneMask LightSet::sample(LaneMask lanes, const LightReference (&refs)[kLanes],
+                          const float (&u_choice)[kLanes], const SamplePairs& u,
+                          LightSample (&out)[kLanes]) const noexcept {
+    AliasTable::Pick picks[kLanes];
+    LaneMask of_kind[std::variant_size_v<Light>] = {};
+    for (LaneMask m = lanes; m != 0; m &= m - 1) {
+        const int i = std::countr_zero(m);
+        out[i] = LightSample{};
+        picks[i] = choice_.sample(u_choice[i]);
+        const LaneMask chosen = static_cast<LaneMask>(picks[i].probability > 0.0f);
+        of_kind[kinds_[picks[i].index]] |= chosen << i;
+        __builtin_prefetch(&lights_[picks[i].index]);  // there may be a million
+    }
+    // Kind by kind: lanes that do the same thing follow each other.
+    LaneMask made = 0;
+    for (LaneMask rest : of_kind) {
+        while (rest != 0) {
+            const int first = std::countr_zero(rest);
+            const Light& light = lights_[picks[first].index];
+            LaneMask same = 1u << first;
+            if (const auto* sky = std::get_if<EnvironmentLight>(&light)) {
+                for (LaneMask m = rest; m != 0; m &= m - 1) {
+                    const int i = std::countr_zero(m);
+                    if (picks[i].index == picks[first].index) same |= 1u << i;
+                }
+                made |= sky->sample(same, u, out);
+            } else if (sample_light(light, refs[first], u.at(first), out[first])) {
+                made |= same;
+            }
+            rest &= ~same;
+        }
+    }
+    for (LaneMask m = made; m != 0; m &= m - 1) {
+        const int i = std::countr_zero(m);
+        out[i].pdf *= picks[i].probability;
+    }
+    return made;
 }
 
 float LightSet::pdf(int index, const LightReference& ref, Vec3f wi, Vec3f p, Vec3f n,
@@ -92,26 +114,54 @@ float LightSet::pdf(int index, const LightReference& ref, Vec3f wi, Vec3f p, Vec
     return choice > 0.0f ? choice * light_pdf(lights_[index], ref, wi, p, n, material) : 0.0f;
 }
 
-Color LightSet::escaped(Vec3f d, float bsdf_pdf, bool camera) const noexcept {
+void LightSet::escaped(LaneMask lanes, const Vec3f (&d)[kLanes], const float (&bsdf_pdf)[kLanes],
+                       bool camera, Color (&out)[kLanes]) const noexcept {
+    for (LaneMask m = lanes; m != 0; m &= m - 1) out[std::countr_zero(m)] = Color(0.0f);
+    EnvironmentLight::Look seen[kLanes];
+    for (int light : infinite_) {
+        if (const auto* sky = std::get_if<EnvironmentLight>(&lights_[light])) {
+            if (camera && !sky->camera_visible) continue;
+            sky->look(lanes, d, seen);
+        } else {
+            const auto& sun = std::get<DistantLight>(lights_[light]);
+            if (camera && !sun.camera_visible) continue;
+            for (LaneMask m = lanes; m != 0; m &= m - 1) {
+                const int i = std::countr_zero(m);
+                seen[i] = seen_along(sun, d[i]);
+            }
+        }
+        const float choice = probability(light);
+        for (LaneMask m = lanes; m != 0; m &= m - 1) {
+            const int i = std::countr_zero(m);
+            const float weight =
+                bsdf_pdf[i] > 0.0f ? mis_power(bsdf_pdf[i], choice * seen[i].pdf) : 1.0f;
+            out[i] += seen[i].radiance * weight;
+        }
+    }
+}
+
+Color LightSet::background(Vec3f d, bool camera) const noexcept {
     Color sum(0.0f);
-    for (int i : infinite_) {
-        const Seen seen = seen_along(lights_[i], d, camera);
-        const float weight =
-            bsdf_pdf > 0.0f ? mis_power(bsdf_pdf, probability(i) * seen.pdf) : 1.0f;
-        sum += seen.radiance * weight;
+    for (int light : infinite_) {
+        if (const auto* sky = std::get_if<EnvironmentLight>(&lights_[light])) {
+            if (!camera || sky->camera_visible) sum += sky->look(d).radiance;
+        } else {
+            const auto& sun = std::get<DistantLight>(lights_[light]);
+            if (!camera || sun.camera_visible) sum += seen_along(sun, d).radiance;
+        }
     }
     return sum;
 }
 
 std::size_t LightSet::bytes() const noexcept {
     std::size_t sum = lights_.capacity() * sizeof(Light) + choice_.bytes();
+    std::set<const EmissiveFaces*> shared;
     for (const Light& light : lights_) {
         if (const auto* e = std::get_if<EnvironmentLight>(&light))
             sum += e->texels.capacity() * sizeof(Color) + e->table.bytes();
-        if (const auto* m = std::get_if<MeshLight>(&light)) {
-            sum += m->triangles.capacity() * sizeof(MeshLight::Triangle) + m->pick.bytes();
-        }
+        if (const auto* m = std::get_if<MeshLight>(&light)) shared.insert(m->faces.get());
     }
+    for (const EmissiveFaces* faces : shared) sum += faces->bytes();
     return sum;
 }
 

@@ -22,19 +22,22 @@ public:
     int size() const noexcept { return static_cast<int>(lights_.size()); }
     const Light& operator[](int i) const noexcept { return lights_[i]; }
 
-    /// Chooses a light by u_choice and samples it; out.pdf includes the choice.
-    bool sample(const LightReference& ref, float u_choice, Vec2f u,
-                LightSample& out) const noexcept;
+    /// For each lane chooses a light by u_choice and samples it; out.pdf includes the choice.
+    /// Returns the lanes that found light.
+    LaneMask sample(LaneMask lanes, const LightReference (&refs)[kLanes],
+                    const float (&u_choice)[kLanes], const SamplePairs& u,
+                    LightSample (&out)[kLanes]) const noexcept;
     /// Density of sample() for a point of light `index` that a ray from ref has hit.
     float pdf(int index, const LightReference& ref, Vec3f wi, Vec3f p, Vec3f n,
               std::int32_t material) const noexcept;
 
-    /// Light from infinity along d, for a ray that hit nothing. bsdf_pdf: density that made the
-    /// ray, 0 if light sampling could not have made it (camera, delta): the result is weighted by
-    /// the power heuristic.
-    Color escaped(Vec3f d, float bsdf_pdf, bool camera) const noexcept;
-    /// Unweighted, for the ray tree.
-    Color background(Vec3f d) const noexcept { return escaped(d, 0.0f, true); }
+    /// Light from infinity along d, for rays that hit nothing. bsdf_pdf: density that made the ray,
+    /// 0 if light sampling could not have made it (camera, delta): the result is weighted by the
+    /// power heuristic.
+    void escaped(LaneMask lanes, const Vec3f (&d)[kLanes], const float (&bsdf_pdf)[kLanes],
+                 bool camera, Color (&out)[kLanes]) const noexcept;
+    /// One ray, unweighted, for the ray tree.
+    Color background(Vec3f d, bool camera) const noexcept;
 
     /// Mean radiance of the surroundings: the ambient light of a ray tree.
     Color ambient() const noexcept { return ambient_; }
@@ -45,6 +48,7 @@ private:
     float probability(int i) const noexcept { return sampled_ > 0 ? choice_.probability(i) : 0.0f; }
 
     std::vector<Light> lights_;
+    std::vector<std::uint8_t> kinds_;  // indices of the variants
     AliasTable choice_;
     int sampled_ = 0;  // lights of positive power
     bool hittable_ = false;

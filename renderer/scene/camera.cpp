@@ -92,34 +92,35 @@ Camera::Camera(const CameraDesc& desc, int width, int height, Vec3d origin, Vec3
                     "camera: aperture_radius needs a focus_distance when the camera is a matrix");
     }
     focus_ = static_cast<float>(focus > 0 ? focus : 1);
+    lens_right_ = Vec3f(c.right * static_cast<double>(aperture_));
+    lens_up_ = Vec3f(c.up * static_cast<double>(aperture_));
     const double pixel = 2 * half_height / height;
     (orthographic_ ? footprint_ : spread_) = static_cast<float>(pixel);
+    // The circle of confusion is the footprint that textures need.
+    if (has_lens() && !orthographic_) footprint_ = 0.2f * aperture_;
 }
 
-CameraRay Camera::ray(Vec2f film, Vec2f lens) const noexcept {
-    const Vec3f across = right_ * (film.x * to_x_ - 1.0f) + up_ * (1.0f - film.y * to_y_);
-    CameraRay r;
-    r.cone_width = footprint_;
-    r.cone_spread = spread_;
-    r.ray.mask = kCameraRays;
-    if (orthographic_) {
-        r.ray.o = position_ + across;
-        r.ray.d = forward_;
-        return r;
+void Camera::rays(const SamplePairs& film, const SamplePairs& lens, RayPacket& out) const noexcept {
+    // One loop per kind of camera: each is vectorised.
+    for (int i = 0; i < kLanes; ++i) {
+        const Vec3f across = right_ * (film.x[i] * to_x_ - 1.0f) + up_ * (1.0f - film.y[i] * to_y_);
+        const Vec3f o = orthographic_ ? position_ + across : position_;
+        const Vec3f d = orthographic_ ? forward_ : normalize(forward_ + across);
+        out.ox[i] = o.x, out.oy[i] = o.y, out.oz[i] = o.z;
+        out.dx[i] = d.x, out.dy[i] = d.y, out.dz[i] = d.z;
+        out.t_min[i] = 0.0f, out.t_max[i] = kInfinity, out.time[i] = 0.0f;
+        out.mask[i] = kCameraRays, out.id[i] = static_cast<std::uint32_t>(i), out.flags[i] = 0;
     }
-    const Vec3f through = forward_ + across;
-    r.ray.o = position_;
-    r.ray.d = normalize(through);
-    if (aperture_ > 0.0f) {
-        const Vec2f d = warp_disc_concentric(lens);
-        const Vec3f shift =
-            normalize(right_) * (d.x * aperture_) + normalize(up_) * (d.y * aperture_);
-        r.ray.o = position_ + shift;
-        r.ray.d = normalize(through * focus_ - shift);
-        // The circle of confusion is the footprint that textures need.
-        r.cone_width = 2.0f * aperture_ * 0.1f;
+    if (!has_lens() || orthographic_) return;
+    for (int i = 0; i < kLanes; ++i) {
+        const Vec3f through =
+            forward_ + right_ * (film.x[i] * to_x_ - 1.0f) + up_ * (1.0f - film.y[i] * to_y_);
+        const Vec2f p = warp_disc_concentric(lens.at(i));
+        const Vec3f shift = lens_right_ * p.x + lens_up_ * p.y;
+        const Vec3f o = position_ + shift, d = normalize(through * focus_ - shift);
+        out.ox[i] = o.x, out.oy[i] = o.y, out.oz[i] = o.z;
+        out.dx[i] = d.x, out.dy[i] = d.y, out.dz[i] = d.z;
     }
-    return r;
 }
 
 }  // namespace tessera

@@ -3,14 +3,9 @@
 
 #include "renderer/api/scene_desc.h"
 #include "renderer/core/ray.h"
+#include "renderer/core/sampler.h"
 
 namespace tessera {
-
-struct CameraRay {
-    Ray ray;
-    float cone_width = 0;   // footprint at the origin, scene units
-    float cone_spread = 0;  // full angle of a pixel, radians
-};
 
 class Camera {
 public:
@@ -20,8 +15,12 @@ public:
     Camera(const CameraDesc& desc, int width, int height, Vec3d origin, Vec3d bounds_min,
            Vec3d bounds_max);
 
-    /// film: pixels, y downward, (0, 0) the top left corner. lens: unit square.
-    CameraRay ray(Vec2f film, Vec2f lens) const noexcept;
+    /// film: pixels, y downward, (0, 0) the top left corner. lens: unit square, read only if
+    /// has_lens(). Fills in origins, directions, t_max and masks of all lanes.
+    void rays(const SamplePairs& film, const SamplePairs& lens, RayPacket& out) const noexcept;
+    /// A ray's footprint at its origin, scene units, and the full angle by which it grows, radians.
+    float cone_width() const noexcept { return footprint_; }
+    float cone_spread() const noexcept { return spread_; }
     bool has_lens() const noexcept { return aperture_ > 0.0f; }
     Vec3f position() const noexcept { return position_; }
     Vec3f forward() const noexcept { return forward_; }
@@ -29,7 +28,8 @@ public:
 private:
     Vec3f position_, right_, up_,
         forward_;  // right_ and up_ scaled to half the film at distance 1 (or in units)
-    float to_x_ = 0, to_y_ = 0;  // 2 / resolution
+    Vec3f lens_right_, lens_up_;  // of the aperture's length
+    float to_x_ = 0, to_y_ = 0;   // 2 / resolution
     float aperture_ = 0, focus_ = 1, spread_ = 0, footprint_ = 0;
     bool orthographic_ = false;
 };

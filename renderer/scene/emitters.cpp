@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
 #include <optional>
 
 #include <fmt/format.h>
@@ -20,6 +22,8 @@ struct EmitterBuilder {
     Geometry& geometry;
     std::vector<Light> lights;
     std::vector<double> powers;
+    // By shape and replacing material.
+    std::map<std::pair<std::uint32_t, std::int32_t>, std::shared_ptr<EmissiveFaces>> shared;
 
     double radius() const { return 0.5 * length(in.bounds_max - in.bounds_min); }
     Vec3f point(const Double3& p) const { return Vec3f(Vec3d(p) - in.origin); }
@@ -60,6 +64,7 @@ struct EmitterBuilder {
     void make(const DistantLightDesc& l, const LightDesc& desc) {
         DistantLight d;
         d.to_light = Vec3f(-normalize(Vec3d(l.direction)));
+        d.frame = Frame(d.to_light);
         d.irradiance = color_of(l.irradiance);
         d.camera_visible = desc.visible;
         const double half = 0.5 * l.angle_deg * kPiD / 180;
@@ -149,10 +154,6 @@ struct EmitterBuilder {
 
     void mesh_light(Placement& placed) {
         const Mesh& mesh = geometry.meshes[placed.shape];
-        const auto material_of = [&](std::uint32_t face) {
-            return placed.material >= 0 ? placed.material
-                                        : mesh.materials[mesh.material_slot(face)];
-        };
         const auto emits = [&](std::int32_t m) {
             return m >= 0 && in.programs[m].facts().emissive;
         };
@@ -161,34 +162,71 @@ struct EmitterBuilder {
                 : std::none_of(mesh.materials.begin(), mesh.materials.end(), emits))
             return;
         MeshLight light;
-        std::vector<double> weights;
-        double emission = 0;
-        for (std::uint32_t face = 0; face < mesh.faces(); ++face) {
-            const std::int32_t m = material_of(face);
-            if (!emits(m)) continue;
-            const double brightness =
-                static_cast<double>(luminance(in.programs[m].mean_emission(in.textures)));
-            if (!(brightness > 0)) continue;
-            add_face(placed, mesh, face, m, light, [&](double area) {
-                weights.push_back(area * brightness);
-                emission += area * brightness;
-            });
+        // A map that can be undone leaves the faces in their own space, once for all instances.
+        constexpr double kTame = 1e4, kLeast = 1e-30, kMost = 1e30;
+        const double determinant = Affined(placed.to_world).determinant();
+        if (placed.instanced && static_cast<double>(placed.condition) < kTame &&
+            std::abs(determinant) > kLeast && std::abs(determinant) < kMost) {
+            light.placed = true;
+            light.to_world = placed.to_world;
+            light.determinant = static_cast<float>(determinant);
+            light.condition = placed.condition;
+            auto& faces = shared[{placed.shape, placed.material}];
+            if (!faces) faces = emissive_faces(mesh, placed.material, Affined());
+            light.faces = faces;
+        } else {
+            light.faces = emissive_faces(mesh, placed.material,
+                                         placed.instanced ? Affined(placed.to_world) : Affined());
         }
-        if (light.triangles.empty()) return;
-        for (const auto& t : light.triangles) {
-            if (light.density_of(t.material) > 0.0f) continue;
-            const double brightness =
-                static_cast<double>(luminance(in.programs[t.material].mean_emission(in.textures)));
-            light.density.push_back({t.material, static_cast<float>(brightness / emission)});
-        }
-        light.pick = AliasTable(weights);
+        if (light.faces->triangles.empty()) return;
         placed.light = next();
+        const double emission = emission_of(light);
         add(std::move(light), emission);
     }
 
+    double brightness(std::int32_t material) const {
+        return static_cast<double>(luminance(in.programs[material].mean_emission(in.textures)));
+    }
+
+    // In place: brightness times area.
+    double emission_of(const MeshLight& light) const {
+        const Affined m = light.placed ? Affined(light.to_world) : Affined();
+        double sum = 0;
+        for (const auto& t : light.faces->triangles) {
+            const double area = 0.5 * length(cross(m.vector(Vec3d(t.ab)), m.vector(Vec3d(t.ac))));
+            sum += area * brightness(t.material);
+        }
+        return sum;
+    }
+
+    std::shared_ptr<EmissiveFaces> emissive_faces(const Mesh& mesh, std::int32_t material,
+                                                  const Affined& to_world) {
+        auto out = std::make_shared<EmissiveFaces>();
+        std::map<std::int32_t, double> bright;
+        std::vector<double> weights;
+        double sum = 0;
+        for (std::uint32_t face = 0; face < mesh.faces(); ++face) {
+            const std::int32_t m =
+                material >= 0 ? material : mesh.materials[mesh.material_slot(face)];
+            if (m < 0 || !in.programs[m].facts().emissive) continue;
+            const auto [found, fresh] = bright.try_emplace(m, 0.0);
+            if (fresh) found->second = brightness(m);
+            if (!(found->second > 0)) continue;
+            add_face(mesh, face, to_world, m, *out, [&](double area) {
+                weights.push_back(area * found->second);
+                sum += weights.back();
+            });
+        }
+        for (const auto& [m, b] : bright) {
+            if (b > 0) out->density.push_back({m, static_cast<float>(b / sum)});
+        }
+        if (!weights.empty()) out->pick = AliasTable(weights);
+        return out;
+    }
+
     template <class Added>
-    void add_face(const Placement& placed, const Mesh& mesh, std::uint32_t face, std::int32_t m,
-                  MeshLight& light, Added added) {
+    static void add_face(const Mesh& mesh, std::uint32_t face, const Affined& to_world,
+                         std::int32_t material, EmissiveFaces& out, Added added) {
         const std::size_t first = mesh.corner(face);
         const bool quad = face >= mesh.triangles;
         constexpr int kQuadHalves[2][3] = {{0, 1, 3}, {2, 3, 1}};
@@ -198,8 +236,8 @@ struct EmitterBuilder {
             Vec3f p[3];
             Vec2f t[3];
             for (int c = 0; c < 3; ++c) {
-                const Vec3f q = mesh.positions[mesh.position_index[first + k[c]]];
-                p[c] = placed.instanced ? placed.to_world.point(q) : q;
+                p[c] =
+                    Vec3f(to_world.point(Vec3d(mesh.positions[mesh.position_index[first + k[c]]])));
                 if (!mesh.uvs.empty())
                     t[c] = mesh.uvs[(mesh.uv_index.empty() ? mesh.position_index
                                                            : mesh.uv_index)[first + k[c]]];
@@ -207,8 +245,8 @@ struct EmitterBuilder {
             const double area =
                 0.5 * length(cross(Vec3d(p[1]) - Vec3d(p[0]), Vec3d(p[2]) - Vec3d(p[0])));
             if (!(area > 0)) continue;
-            light.triangles.push_back(
-                {p[0], p[1] - p[0], p[2] - p[0], t[0], t[1] - t[0], t[2] - t[0], m});
+            out.triangles.push_back(
+                {p[0], p[1] - p[0], p[2] - p[0], t[0], t[1] - t[0], t[2] - t[0], material});
             added(area);
         }
     }
@@ -256,7 +294,7 @@ struct EmitterBuilder {
 }  // namespace
 
 LightSet make_emitters(const EmitterInput& in, Geometry& geometry) {
-    EmitterBuilder b{in, geometry, {}, {}};
+    EmitterBuilder b{in, geometry, {}, {}, {}};
     b.surfaces(geometry.placements.size());
     for (const LightDesc& light : in.desc.lights) b.described(light);
     if (in.desc.environment) b.environment(*in.desc.environment);

@@ -31,7 +31,9 @@ void plastic_sample(benchmark::State& state) {
     for (auto _ : state) {
         const LobeList lobes = openpbr_lobes(p, wo, true);
         const Vec2f u = sample_pair(7, index, 0), c = sample_pair(7, index++, 1);
-        benchmark::DoNotOptimize(lobes.sample(wo, u, c.x));
+        LobeSample s;
+        benchmark::DoNotOptimize(lobes.sample(wo, u, c.x, s));
+        benchmark::DoNotOptimize(s);
     }
 }
 BENCHMARK(plastic_sample);

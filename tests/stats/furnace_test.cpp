@@ -5,6 +5,7 @@
 #include "materials/energy.h"
 #include "materials/surface/openpbr.h"
 #include "renderer/core/sampler.h"
+#include "tests/support/drawn.h"
 #include "tests/support/parallel_cases.h"
 
 using namespace tessera;
@@ -19,7 +20,7 @@ double albedo_of(const LobeList& lobes, Vec3f wo) {
     constexpr std::uint32_t kPoints = 1u << 13;
     double sum = 0;
     for (std::uint32_t i = 0; i < kPoints; ++i) {
-        const auto s = lobes.sample(wo, sample_pair(77, i, 0), sample_pair(77, i, 1).x);
+        const auto s = drawn(lobes, wo, sample_pair(77, i, 0), sample_pair(77, i, 1).x);
         if (s)
             sum += static_cast<double>(max_component(s->weight)) * static_cast<double>(s->eta) *
                    static_cast<double>(s->eta);

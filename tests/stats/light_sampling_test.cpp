@@ -114,7 +114,7 @@ LightCase mesh_case(std::string name, Vec3f ref) {
                 Vec3d{0.01, 0.2, 1}};
     c.pdf = [ref, light = c.light](Vec3d w) {
         double sum = 0;
-        for (const auto& t : std::get<MeshLight>(*light).triangles) {
+        for (const auto& t : std::get<MeshLight>(*light).faces->triangles) {
             const Vec3d ab(t.ab), ac(t.ac), n = cross(ab, ac);
             const double along = dot(Vec3d(t.a - ref), n) / dot(w, n);
             const Vec3d d = Vec3d(ref) + w * along - Vec3d(t.a);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "materials/surface/openpbr.h"
+#include "tests/support/drawn.h"
 #include "tests/support/parallel_cases.h"
 #include "tests/support/sphere_chi_square.h"
 
@@ -47,7 +48,7 @@ constexpr double kAngles[] = {0, 30, 60, 80, 89};
 std::string chi_square_failure(const LobeCase& c, double level) {
     const auto sample = [&](Random& n) -> std::optional<Vec3d> {
         const Vec2f u = n.pair();
-        const auto s = c.lobes.sample(c.wo, u, n.unit());
+        const auto s = drawn(c.lobes, c.wo, u, n.unit());
         if (!s || s->delta) return std::nullopt;
         return Vec3d(s->wi);
     };
@@ -80,7 +81,7 @@ std::string weight_failure(const LobeCase& c, double tolerance) {
     int made = 0;
     for (int i = 0; i < 4000; ++i) {
         const Vec2f u = n.pair();
-        const auto s = c.lobes.sample(c.wo, u, n.unit());
+        const auto s = drawn(c.lobes, c.wo, u, n.unit());
         if (!s || s->delta) continue;
         ++made;
         if (std::fabs(length2(Vec3d(s->wi)) - 1) > 1e-5)
