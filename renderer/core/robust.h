@@ -35,23 +35,23 @@ inline Vec3f error_in_place(const Affinef& m, float condition, Vec3f p, Vec3f er
            Vec3f(max_component(magnitude) * condition * gamma_bound(2));
 }
 
-/// Next float away from (up) or toward negative infinity. Finite input, not NaN.
-inline float next_up(float v) {
-    if (v == 0.0f) return std::numeric_limits<float>::min();  // denormals are flushed
-    const auto bits = std::bit_cast<std::uint32_t>(v);
-    return std::bit_cast<float>(v > 0.0f ? bits + 1 : bits - 1);
+/// The float next to v on the side that `toward` is on; v itself for 0. Finite input. Branch-free:
+/// the sides are random.
+inline float next_toward_sign(float v, float toward) {
+    const auto bits = std::bit_cast<std::int32_t>(v);
+    const std::int32_t outward = bits ^ std::bit_cast<std::int32_t>(toward);  // sign: toward zero
+    const float moved = std::bit_cast<float>(bits + (outward >= 0 ? 1 : -1));
+    const float from_zero = std::copysign(std::numeric_limits<float>::min(), toward);
+    const float next = v == 0.0f ? from_zero : moved;  // denormals are flushed
+    return toward == 0.0f ? v : next;
 }
-inline float next_down(float v) { return -next_up(-v); }
 
 /// p moved off the surface along +-ng to the side w points to. error: bound per axis.
 inline Vec3f offset_origin(Vec3f p, Vec3f error, Vec3f ng, Vec3f w) {
-    const float d = dot(abs(ng), error) * kSafety;
-    const Vec3f offset = dot(w, ng) < 0.0f ? ng * -d : ng * d;
-    const Vec3f q = p + offset;
-    const auto away = [](float value, float o) {
-        return o > 0.0f ? next_up(value) : (o < 0.0f ? next_down(value) : value);
-    };
-    return {away(q.x, offset.x), away(q.y, offset.y), away(q.z, offset.z)};
+    const float d = std::copysign(dot(abs(ng), error) * kSafety, dot(w, ng));
+    const Vec3f offset = ng * d, q = p + offset;
+    return {next_toward_sign(q.x, offset.x), next_toward_sign(q.y, offset.y),
+            next_toward_sign(q.z, offset.z)};
 }
 
 /// What Debian's Embree accepts without aborting: finite, and below its 1.844e18 limit with room to
@@ -59,9 +59,8 @@ inline Vec3f offset_origin(Vec3f p, Vec3f error, Vec3f ng, Vec3f w) {
 inline bool traceable(Vec3f o, Vec3f d) {
     constexpr float kLimit = 1e18f;
     // A sum, not a maximum: it hands a NaN on.
-    const float m = (std::abs(o.x) + std::abs(o.y) + std::abs(o.z)) +
-                    (std::abs(d.x) + std::abs(d.y) + std::abs(d.z));
-    return m <= kLimit && length2(d) > 0.0f;
+    const float m = std::abs(o.x) + std::abs(o.y) + std::abs(o.z), l2 = length2(d);
+    return bool(int(m <= kLimit) & int(l2 > 0.0f) & int(l2 <= kLimit * kLimit));
 }
 
 }  // namespace tessera

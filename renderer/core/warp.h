@@ -19,10 +19,11 @@ inline Vec2f warp_disc(Vec2f u) {
 /// and Square", Journal of Graphics Tools 2(3), 1997.
 inline Vec2f warp_disc_concentric(Vec2f u) {
     const float a = 2.0f * u.x - 1.0f, b = 2.0f * u.y - 1.0f;
-    if (a == 0.0f && b == 0.0f) return {0, 0};
+    // No branch: which of the two is larger is random.
     const bool wide = std::fabs(a) > std::fabs(b);
-    const float r = wide ? a : b;
-    const float turn = wide ? 0.125f * (b / a) : 0.25f - 0.125f * (a / b);
+    const float r = wide ? a : b, over = wide ? b : a;
+    const float eighths = r == 0.0f ? 0.0f : 0.125f * (over / r);
+    const float turn = wide ? eighths : 0.25f - eighths;
     const SinCos s = sincos_turn(turn < 0.0f ? turn + 1.0f : turn);
     return {r * s.cos, r * s.sin};
 }
@@ -44,12 +45,8 @@ inline Vec3f warp_sphere(Vec2f u) {
 /// Barycentrics (b1, b2) of a uniform point in a triangle.
 /// Heitz, "A Low-Distortion Map Between Triangle and Square", 2019.
 inline Vec2f warp_triangle(Vec2f u) {
-    if (u.y > u.x) {
-        const float x = u.x * 0.5f;
-        return {x, u.y - x};
-    }
-    const float y = u.y * 0.5f;
-    return {u.x - y, y};
+    const float half = 0.5f * std::min(u.x, u.y);
+    return {u.x - half, u.y - half};
 }
 
 /// Cone about +z with 1 - cos(half angle) = one_minus_cos; uniform density 1 / (2 pi

@@ -164,7 +164,8 @@ SurfacePoint surface_point(const Geometry& geometry, const HitTarget& target, co
     return s;
 }
 
-void prefetch_indices(const Geometry& geometry, const HitTarget& target, const Hit& hit) noexcept {
+void prefetch_indices(const Geometry& geometry, const HitTarget& target, const Hit& hit,
+                      bool uvs) noexcept {
     const Placement& placed = geometry.placements[target.placement];
     if (placed.kind != PlacedKind::mesh) return;
     const Mesh& mesh = geometry.meshes[placed.shape];
@@ -173,9 +174,11 @@ void prefetch_indices(const Geometry& geometry, const HitTarget& target, const H
     __builtin_prefetch(&mesh.position_index[corner]);
     if (!mesh.normal_index.empty()) __builtin_prefetch(&mesh.normal_index[corner]);
     if (!mesh.face_material.empty()) __builtin_prefetch(&mesh.face_material[face]);
+    if (uvs && !mesh.uv_index.empty()) __builtin_prefetch(&mesh.uv_index[corner]);
 }
 
-void prefetch_vertices(const Geometry& geometry, const HitTarget& target, const Hit& hit) noexcept {
+void prefetch_vertices(const Geometry& geometry, const HitTarget& target, const Hit& hit,
+                       bool uvs) noexcept {
     const Placement& placed = geometry.placements[target.placement];
     if (placed.kind != PlacedKind::mesh) return;
     const Mesh& mesh = geometry.meshes[placed.shape];
@@ -187,6 +190,10 @@ void prefetch_vertices(const Geometry& geometry, const HitTarget& target, const 
         __builtin_prefetch(&mesh.positions[mesh.position_index[k]]);
         if (normals) __builtin_prefetch(&mesh.normals[normal_index[k]]);
     }
+    if (!uvs || mesh.uvs.empty()) return;
+    const std::uint32_t* uv_index =
+        mesh.uv_index.empty() ? mesh.position_index.data() : mesh.uv_index.data();
+    for (std::size_t k = corner; k < corner + 3; ++k) __builtin_prefetch(&mesh.uvs[uv_index[k]]);
 }
 
 void add_texture_frame(const Geometry& geometry, const Hit& hit, SurfacePoint& s) noexcept {

@@ -112,7 +112,7 @@ private:
         escaped_ = 0;
         each(alive_, [&](int i) {
             if (hit_[i].valid()) {
-                prefetch_vertices(scene_.geometry(), target_[i], hit_[i]);
+                prefetch_vertices(scene_.geometry(), target_[i], hit_[i], F.textures);
             } else {
                 escaped_ |= 1u << i;
             }
@@ -123,7 +123,7 @@ private:
     void ask_for_indices(int i) noexcept {
         if (!hit_[i].valid()) return;
         target_[i] = scene_.accel().target(hit_[i]);
-        prefetch_indices(scene_.geometry(), target_[i], hit_[i]);
+        prefetch_indices(scene_.geometry(), target_[i], hit_[i], F.textures);
     }
 
     // ---- escape: what the rays that hit nothing see

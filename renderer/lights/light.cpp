@@ -132,7 +132,7 @@ bool sample(const MeshLight& l, const LightReference& ref, Vec2f u, LightSample&
     s.material = t.material;
     s.uv = t.ta + t.tab * b.x + t.tac * b.y;
     Vec3f p = t.a + t.ab * b.x + t.ac * b.y, ab = t.ab, ac = t.ac;
-    s.p_error = abs(t.a) * gamma_bound(9) + Vec3f((length(t.ab) + length(t.ac)) * gamma_bound(7));
+    s.p_error = abs(t.a) * gamma_bound(9) + (abs(t.ab) + abs(t.ac)) * gamma_bound(9);
     if (l.placed) {
         s.p_error = error_in_place(l.to_world, l.condition, p, s.p_error);
         p = l.to_world.point(p);
