@@ -18,9 +18,10 @@ inline float fresnel_dielectric(float cos_i, float eta, float* cos_t_out = nullp
     }
     const float cos_t = std::sqrt(1.0f - sin2_t);
     if (cos_t_out) *cos_t_out = cos_t;
-    const float rs = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
-    const float rp = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
-    return 0.5f * (rs * rs + rp * rp);
+    // Both polarisations over one denominator.
+    const float s = cos_i + eta * cos_t, p = eta * cos_i + cos_t;
+    const float rs = (cos_i - eta * cos_t) * p, rp = (eta * cos_i - cos_t) * s;
+    return 0.5f * (rs * rs + rp * rp) / (s * s * p * p);
 }
 
 constexpr float pow5(float x) { return x * x * x * x * x; }

@@ -23,6 +23,17 @@ struct Ggx {
         const float k = a * a + b * b + h.z * h.z;
         return h.z > 0.0f ? 1.0f / (kPi * ax * ay * k * k) : 0.0f;
     }
+    /// d(h / |h|) for an h of squared length l2, h.z > 0, by one division.
+    float d_of(Vec3f h, float l2) const {
+        const float a = h.x * ay, b = h.y * ax, c = h.z * (ax * ay);
+        const float k = a * a + b * b + c * c, axy = ax * ay;
+        return axy * axy * axy * l2 * l2 / (kPi * k * k);
+    }
+    /// w.z (1 + 2 lambda(w)): the length of w in the space where the microfacets are a hemisphere.
+    float stretched(Vec3f w) const {
+        const float a = w.x * ax, b = w.y * ay;
+        return std::sqrt(w.z * w.z + a * a + b * b);
+    }
     float lambda(Vec3f w) const {
         const float a = w.x * ax, b = w.y * ay;
         return 0.5f * (std::sqrt(1.0f + (a * a + b * b) / (w.z * w.z)) - 1.0f);

@@ -24,16 +24,17 @@ struct RoughReflection {
     Fresnel fresnel;
     Color reflectance{1.0f};  // directional albedo, for choosing lobes
 
+    // D(h) Gv(wo) / (4 wo.z) and the like with their fractions cleared: with s(w) = w.z (1 + 2
+    // lambda(w)), of which nothing is divided by a grazing cosine.
     LobeEval eval(Vec3f wo, Vec3f wi) const {
         if (wi.z <= 0.0f) return {};
         const Vec3f sum = wo + wi;
         const float l2 = length2(sum);
         if (!(l2 > 0.0f)) return {};
-        const Vec3f h = sum / std::sqrt(l2);
-        const float common = ggx.d(h) / (4.0f * wo.z);
-        const float masked = 1.0f + ggx.lambda(wo);
-        return {fresnel(clamp01(dot(wo, h))) * (common / (masked + ggx.lambda(wi))),
-                common / masked};
+        const float so = ggx.stretched(wo), si = ggx.stretched(wi), d = ggx.d_of(sum, l2);
+        const float pdf = d / (2.0f * (wo.z + so));
+        const float cos_h = std::min(0.5f * std::sqrt(l2), 1.0f);  // dot(wo, h): wo and wi are unit
+        return {fresnel(cos_h) * (d * wi.z / (2.0f * (so * wi.z + si * wo.z))), pdf};
     }
     bool direction(Vec3f wo, Vec2f u, float, LobeSample& out) const {
         out = {reflect(wo, ggx.sample_visible(wo, u)),

@@ -66,6 +66,14 @@ struct alignas(64) HitPacket {
     }
 };
 
+/// A vector per lane, by components: what all lanes do alike is done in loops over these, which the
+/// compiler vectorises.
+struct alignas(64) Vec3Lanes {
+    float x[kLanes], y[kLanes], z[kLanes];
+    Vec3f operator[](int lane) const { return {x[lane], y[lane], z[lane]}; }
+    void set(int lane, Vec3f v) { x[lane] = v.x, y[lane] = v.y, z[lane] = v.z; }
+};
+
 /// A value per lane, not there until it is written: what a block never reads it need not clear.
 template <class T>
 class Lanes {
@@ -86,5 +94,15 @@ private:
 /// One bit per lane.
 using LaneMask = std::uint32_t;
 inline constexpr LaneMask kAllLanes = 0xffffu;
+
+/// Yes or no per lane as the vectorised loops write it: 1 or 0.
+struct LaneFlags {
+    std::uint32_t is[kLanes];
+    LaneMask mask() const {
+        LaneMask m = 0;
+        for (int i = 0; i < kLanes; ++i) m |= is[i] << i;
+        return m;
+    }
+};
 
 }  // namespace tessera

@@ -35,9 +35,10 @@ public:
             escape(depth);
             draw_samples(depth);
             each(alive_, [&](int i) { arrive(i, depth); });
+            face_viewer();
             each(alive_, [&](int i) { find_lobes(i); });
             sample_lights();
-            each(alive_, [&](int i) { bounce(i, depth); });
+            scatter(depth);
             occlude(depth);
         }
         finish();
@@ -193,15 +194,43 @@ private:
         if (!program || depth_[i].last) stop(i);
     }
 
-    void find_lobes(int i) noexcept {
-        const SurfacePoint& s = surface_[i];
-        const ShaderProgram& program = scene_.program(s.material);
-        make(frame_[i], [&] {
-            return facing_frame<F>(s, program, shade_in_[i], scene_.textures(), -ray_[i].d);
+    // ---- the frames that face the viewers, and what the surfaces do there
+    // ----------------------------------------
+    void face_viewer() noexcept {
+        Vec3Lanes wo, ns;
+        each(alive_, [&](int i) {
+            const SurfacePoint& s = surface_[i];
+            const bool front = dot(s.ng, -ray_[i].d) >= 0.0f;
+            frame_.front.is[i] = front;
+            frame_.ng.set(i, front ? s.ng : -s.ng);
+            wo.set(i, -ray_[i].d);
+            ns.set(i, facing_normal<F>(s, scene_.program(s.material), shade_in_[i],
+                                       scene_.textures(), front));
+            p_.set(i, s.p);
+            p_error_.set(i, s.p_error);
         });
-        make(lobes_[i],
-             [&] { return make_lobes<F>(program, shade_in_[i], scene_.textures(), frame_[i]); });
-        from_[i] = {s.p};
+        for (int i = 0; i < kLanes; ++i) {
+            const Frame f(visible_normal(ns[i], wo[i]));
+            frame_.set_shading(i, f);
+            frame_.wo.set(i, f.to_local(wo[i]));
+        }
+        if constexpr (F.textures || F.specular) {
+            each(alive_, [&](int i) {
+                const SurfacePoint& s = surface_[i];
+                if (!frame_follows_texture<F>(scene_.program(s.material))) return;
+                const Frame f = frame_along(frame_.n[i], s.dpdu);
+                frame_.set_shading(i, f);
+                frame_.wo.set(i, f.to_local(wo[i]));
+            });
+        }
+    }
+
+    void find_lobes(int i) noexcept {
+        make(lobes_[i], [&] {
+            return make_lobes<F>(scene_.program(surface_[i].material), shade_in_[i],
+                                 scene_.textures(), frame_.wo[i], frame_.front.is[i] != 0);
+        });
+        from_[i] = {surface_[i].p};
         if (!depth_[i].layers_done) note_layers(i);
     }
 
@@ -214,34 +243,45 @@ private:
         each(alive_,
              [&](int i) { lanes |= static_cast<LaneMask>(lobes_[i].has_extended_part()) << i; });
         if (lanes == 0) return;
-        lanes = scene_.lights().sample(lanes, from_.array(), choice_u_.x, light_u_, light_.array());
+        lanes = scene_.lights().sample(lanes, from_.array(), choice_u_.x, light_u_, light_);
+        lanes &= aim_at_lights();
         each(lanes, [&](int i) { weigh_light(i); });
     }
 
+    // Shadow rays, and the lights as the surfaces' frames see them. Returns the lanes on whose side
+    // of the surface the light is.
+    LaneMask aim_at_lights() noexcept {
+        LaneFlags faced;
+        for (int i = 0; i < kLanes; ++i) {
+            const Vec3f wi = light_.wi[i], local = frame_.shading(i).to_local(wi);
+            const Vec3f o = offset_origin(p_[i], p_error_[i], frame_.ng[i], wi);
+            const Vec3f end = offset_origin(light_.p[i], light_.p_error[i], light_.n[i], -wi) - o;
+            const bool infinite = light_.infinite[i] != 0;
+            shadow_o_.set(i, o);
+            shadow_d_.set(
+                i, {infinite ? wi.x : end.x, infinite ? wi.y : end.y, infinite ? wi.z : end.z});
+            // The end itself is not in the way.
+            shadow_t_max_[i] = infinite ? kInfinity : 0x1.fffffcp-1f;
+            wi_.set(i, local);
+            faced.is[i] = same_side(wi, local, frame_.ng[i]) && (F.transmission || local.z > 0.0f);
+        }
+        return faced.mask();
+    }
+
     void weigh_light(int i) noexcept {
-        const SurfacePoint& s = surface_[i];
-        const FacingFrame& frame = frame_[i];
-        LightSample& light = light_[i];
-        const Vec3f wi = frame.shading.to_local(light.wi);
-        if (!same_side(light.wi, wi, frame.ng)) return;
-        if (!F.transmission && wi.z <= 0.0f) return;
-        const LobeEval e = lobes_[i].eval(frame.wo, wi);
+        const LobeEval e = lobes_[i].eval(frame_.wo[i], wi_[i]);
         if (!(max_component(e.f) > 0.0f)) return;
-        if (light.material >= 0) {
+        Color radiance = light_.radiance[i];
+        if (light_.material[i] >= 0) {
             ShadeInput in;
-            in.uv = light.uv;
-            light.radiance = scene_.program(light.material).visible_emission(in, scene_.textures());
+            in.uv = light_.uv[i];
+            radiance = scene_.program(light_.material[i]).visible_emission(in, scene_.textures());
         }
-        const float weight = light.delta ? 1.0f : mis_power(light.pdf, e.pdf);
-        const Color c = throughput_[i] * e.f * light.radiance * (weight / light.pdf);
+        const float pdf = light_.pdf[i];
+        const float weight = light_.delta[i] ? 1.0f : mis_power(pdf, e.pdf);
+        const Color c = throughput_[i] * e.f * radiance * (weight / pdf);
         if (!(max_component(c) > 0.0f)) return;
-        Ray& ray = shadow_[i];
-        ray = Ray{offset_origin(s.p, s.p_error, s.ng, light.wi), light.wi};
-        if (!light.infinite) {
-            ray.d = offset_origin(light.p, light.p_error, light.n, -light.wi) - ray.o;
-            ray.t_max = 0x1.fffffcp-1f;  // the end itself is not in the way
-        }
-        if (!traceable(ray.o, ray.d)) return invalid(InvalidCause::shadow_ray, i);
+        if (!traceable(shadow_o_[i], shadow_d_[i])) return invalid(InvalidCause::shadow_ray, i);
         pending_[i] = c;
         shadow_lanes_ |= 1u << i;
     }
@@ -252,35 +292,48 @@ private:
         if (shadow_lanes_ == 0) return;
         counters_.rays.shadow += static_cast<std::uint64_t>(std::popcount(shadow_lanes_));
         ray_seeds(2 * depth + 1, seeds_);
+        const auto shadow = [&](int i) {
+            return Ray{shadow_o_[i], shadow_d_[i], shadow_t_max_[i]};
+        };
         LaneMask blocked = 0;
         if (depth == 0) {
             RayPacket& rays = packet_.ray;
-            each(shadow_lanes_, [&](int i) { rays.set(i, shadow_[i]); });
+            each(shadow_lanes_, [&](int i) { rays.set(i, shadow(i)); });
             if (job_.log) job_.log->packet(rays, shadow_lanes_, seeds_, true);
             blocked = scene_.accel().occluded(rays, shadow_lanes_, seeds_);
         } else {
             each(shadow_lanes_, [&](int i) {
-                if (job_.log) job_.log->single(shadow_[i], seeds_[i], true);
-                blocked |= static_cast<LaneMask>(scene_.accel().occluded(shadow_[i], seeds_[i]))
-                           << i;
+                const Ray ray = shadow(i);
+                if (job_.log) job_.log->single(ray, seeds_[i], true);
+                blocked |= static_cast<LaneMask>(scene_.accel().occluded(ray, seeds_[i])) << i;
             });
         }
         each(shadow_lanes_ & ~blocked, [&](int i) { out_[i].radiance += pending_[i]; });
     }
 
-    // ---- bounce: the path goes on, or stops
+    // ---- scatter: the paths go on, or stop
     // -------------------------------------------------------------------------------------
-    void bounce(int i, std::uint32_t depth) noexcept {
-        if (!scatter(i, depth)) stop(i);
+    void scatter(std::uint32_t depth) noexcept {
+        each(alive_, [&](int i) {
+            if (!lobes_[i].sample(frame_.wo[i], bsdf_u_.at(i), choice_u_.y[i], scattered_[i]))
+                return stop(i);
+            wi_.set(i, scattered_[i].wi);
+        });
+        LaneFlags leaves;
+        for (int i = 0; i < kLanes; ++i) {
+            const Vec3f local = wi_[i], wi = frame_.shading(i).to_world(local);
+            next_o_.set(i, offset_origin(p_[i], p_error_[i], frame_.ng[i], wi));
+            next_d_.set(i, wi);
+            leaves.is[i] = same_side(wi, local, frame_.ng[i]);
+        }
+        alive_ &= leaves.mask();
+        each(alive_, [&](int i) {
+            if (!carry_on(i, depth)) stop(i);
+        });
     }
 
-    bool scatter(int i, std::uint32_t depth) noexcept {
-        const SurfacePoint& s = surface_[i];
-        const FacingFrame& frame = frame_[i];
-        LobeSample b;
-        if (!lobes_[i].sample(frame.wo, bsdf_u_.at(i), choice_u_.y[i], b)) return false;
-        const Vec3f wi = frame.shading.to_world(b.wi);
-        if (!same_side(wi, b.wi, frame.ng)) return false;
+    bool carry_on(int i, std::uint32_t depth) noexcept {
+        const LobeSample& b = scattered_[i];
         throughput_[i] *= b.weight;
         PathDepth& at = depth_[i];
         // Behind a mirror or clear glass the albedo is that of what is seen there.
@@ -310,7 +363,7 @@ private:
                 throughput_[i] *= 1.0f / survive;
             }
         }
-        ray_[i] = {offset_origin(s.p, s.p_error, s.ng, wi), wi, kInfinity, kOtherRays};
+        ray_[i] = Ray{next_o_[i], next_d_[i]};
         cone_spread_[i] = std::max(cone_spread_[i], b.spread);
         if (!traceable(ray_[i].o, ray_[i].d)) {
             invalid(InvalidCause::bounce_ray, i);
@@ -333,7 +386,7 @@ private:
 
     // Albedo of the first surface that is not a mirror or clear glass, as denoisers want it.
     void note_layers(int i) noexcept {
-        out_[i].albedo = throughput_[i] * lobes_[i].albedo(frame_[i].wo);
+        out_[i].albedo = throughput_[i] * lobes_[i].albedo(frame_.wo[i]);
     }
 
     void invalid(InvalidCause cause, int i) noexcept {
@@ -380,11 +433,16 @@ private:
     Lanes<HitTarget> target_;
     Lanes<SurfacePoint> surface_;
     Lanes<ShadeInput> shade_in_;
-    Lanes<FacingFrame> frame_;
+    Vec3Lanes p_, p_error_;
+    FacingFrames frame_;
     Lanes<Lobes<F>> lobes_;
-    Lanes<LightSample> light_;
-    Lanes<Ray> shadow_;
+    LightSamples light_;
+    Vec3Lanes wi_;  // local, of the light or of the next ray
+    Vec3Lanes shadow_o_, shadow_d_;
+    float shadow_t_max_[kLanes];
     Lanes<Color> pending_;  // light that waits for its shadow ray
+    Lanes<LobeSample> scattered_;
+    Vec3Lanes next_o_, next_d_;
     HitPacket packet_;
 };
 

@@ -45,12 +45,50 @@ struct FacingFrame {
     bool front = true;
 };
 
+/// Those of a block.
+struct FacingFrames {
+    Vec3Lanes s, t, n;  // the shading frames' axes
+    Vec3Lanes ng, wo;
+    LaneFlags front;
+
+    Frame shading(int i) const { return {s[i], t[i], n[i]}; }
+    void set_shading(int i, const Frame& f) { s.set(i, f.s), t.set(i, f.t), n.set(i, f.n); }
+};
+
 /// A shading normal that wo cannot see is bent until it can, just.
 inline Vec3f visible_normal(Vec3f ns, Vec3f wo) {
     constexpr float kGrazing = 1e-3f;
     const float c = dot(ns, wo);
-    if (c >= kGrazing) return ns;
-    return normalize(ns + wo * (kGrazing - c));
+    const Vec3f bent = normalize(ns + wo * (kGrazing - c));
+    const bool seen = c >= kGrazing;
+    return {seen ? ns.x : bent.x, seen ? ns.y : bent.y, seen ? ns.z : bent.z};
+}
+
+/// The shading normal on the viewer's side, the normal map applied.
+template <Features F>
+Vec3f facing_normal(const SurfacePoint& s, const ShaderProgram& program, const ShadeInput& in,
+                    const TextureStore* textures, bool front) {
+    const Vec3f plain = front ? s.ns : -s.ns;
+    if constexpr (F.textures) {
+        if (program.has_normal_map()) {
+            if (const auto mapped = program.normal(in, textures)) {
+                // The map lives in the frame of the unflipped normal.
+                const Frame base = frame_along(s.ns, s.dpdu);
+                const Vec3f m =
+                    normalize(base.to_world({mapped->x, mapped->y * s.handed, mapped->z}));
+                const Vec3f n = front ? m : -m;
+                if (dot(n, front ? s.ng : -s.ng) > 0.0f) return n;
+            }
+        }
+    }
+    return plain;
+}
+
+/// Whether the material's look turns with the texture's frame.
+template <Features F>
+bool frame_follows_texture(const ShaderProgram& program) {
+    if constexpr (F.textures || F.specular) return program.facts().tangent;
+    return false;
 }
 
 template <Features F>
@@ -59,24 +97,8 @@ FacingFrame facing_frame(const SurfacePoint& s, const ShaderProgram& program, co
     FacingFrame f;
     f.front = dot(s.ng, wo) >= 0.0f;
     f.ng = f.front ? s.ng : -s.ng;
-    Vec3f n = f.front ? s.ns : -s.ns;
-    bool along = false;
-    if constexpr (F.textures || F.specular) {
-        along = program.facts().tangent;
-        if constexpr (F.textures) {
-            if (const auto mapped =
-                    program.has_normal_map() ? program.normal(in, textures) : std::nullopt) {
-                // The map lives in the frame of the unflipped normal.
-                const Frame base = frame_along(s.ns, s.dpdu);
-                const Vec3f m =
-                    normalize(base.to_world({mapped->x, mapped->y * s.handed, mapped->z}));
-                n = f.front ? m : -m;
-                if (dot(n, f.ng) <= 0.0f) n = f.front ? s.ns : -s.ns;
-            }
-        }
-    }
-    n = visible_normal(n, wo);
-    f.shading = along ? frame_along(n, s.dpdu) : Frame(n);
+    const Vec3f n = visible_normal(facing_normal<F>(s, program, in, textures, f.front), wo);
+    f.shading = frame_follows_texture<F>(program) ? frame_along(n, s.dpdu) : Frame(n);
     f.wo = f.shading.to_local(wo);
     return f;
 }
@@ -91,10 +113,10 @@ inline LobeList diffuse_lobes(Color base_color) {
 
 template <Features F>
 Lobes<F> make_lobes(const ShaderProgram& program, const ShadeInput& in,
-                    const TextureStore* textures, const FacingFrame& f) {
+                    const TextureStore* textures, Vec3f wo, bool front) {
     if constexpr (F.specular || F.transmission) {
         if (!program.facts().specular) return diffuse_lobes(program.base_color(in, textures));
-        return openpbr_lobes(program.surface(in, textures), f.wo, f.front);
+        return openpbr_lobes(program.surface(in, textures), wo, front);
     } else {
         return DiffuseOnly(program.base_color(in, textures));
     }

@@ -129,7 +129,7 @@ private:
         if (program->facts().emissive)
             out_[i].radiance += node.weight * program->emission(in, scene_.textures());
         v.frame = facing_frame<F>(v.s, *program, in, scene_.textures(), -node.ray.d);
-        v.lobes = make_lobes<F>(*program, in, scene_.textures(), v.frame);
+        v.lobes = make_lobes<F>(*program, in, scene_.textures(), v.frame.wo, v.frame.front);
         if (node.depth == 0) out_[i].albedo = v.lobes.albedo(v.frame.wo);
         for (int k = 0; k < v.lobes.size(); ++k) {
             if (std::holds_alternative<DiffuseLobe>(v.lobes[k].model)) {

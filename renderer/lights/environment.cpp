@@ -98,33 +98,36 @@ bool EnvironmentLight::sample(Vec2f u, LightSample& s) const {
     return s.pdf > 0.0f;
 }
 
-LaneMask EnvironmentLight::sample(LaneMask lanes, const SamplePairs& u,
-                                  LightSample (&out)[kLanes]) const {
+LaneMask EnvironmentLight::sample(LaneMask lanes, const SamplePairs& u, LightSamples& out) const {
     LaneMask made = 0;
     if (width == 0) {
         for (LaneMask m = lanes; m != 0; m &= m - 1) {
             const int i = std::countr_zero(m);
-            made |= static_cast<LaneMask>(sample(u.at(i), out[i])) << i;
+            LightSample s;
+            made |= static_cast<LaneMask>(sample(u.at(i), s)) << i;
+            out.set(i, s);
         }
         return made;
     }
     SamplePairs uv;
-    float density[kLanes], x[kLanes], y[kLanes], z[kLanes], pdf[kLanes];
+    float density[kLanes];
     table.sample(u, uv, density);
+    Vec3Lanes wi;
     for (int i = 0; i < kLanes; ++i) {
         const Vec3f d = direction_of(*this, uv.at(i));
-        x[i] = d.x, y[i] = d.y, z[i] = d.z;
+        wi.set(i, d);
         const float sin_theta = sine_of(d);
-        pdf[i] = sin_theta > 0.0f ? per_solid_angle(density[i], sin_theta) : 0.0f;
+        density[i] = sin_theta > 0.0f ? per_solid_angle(density[i], sin_theta) : 0.0f;
     }
     for (LaneMask m = lanes; m != 0; m &= m - 1) {
         const int i = std::countr_zero(m);
-        LightSample& s = out[i];
-        s.infinite = true;
-        s.wi = {x[i], y[i], z[i]};
-        s.pdf = pdf[i];
-        s.radiance = texel(uv.at(i));
-        made |= static_cast<LaneMask>(pdf[i] > 0.0f) << i;
+        out.wi.set(i, wi[i]);
+        out.pdf[i] = density[i];
+        out.radiance[i] = texel(uv.at(i));
+        out.delta[i] = 0;
+        out.infinite[i] = 1;
+        out.material[i] = -1;
+        made |= static_cast<LaneMask>(density[i] > 0.0f) << i;
     }
     return made;
 }

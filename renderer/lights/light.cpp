@@ -151,6 +151,19 @@ bool sample(const EnvironmentLight& l, const LightReference&, Vec2f u, LightSamp
 
 }  // namespace
 
+void LightSamples::set(int lane, const LightSample& s) {
+    wi.set(lane, s.wi);
+    p.set(lane, s.p);
+    p_error.set(lane, s.p_error);
+    n.set(lane, s.n);
+    radiance[lane] = s.radiance;
+    pdf[lane] = s.pdf;
+    delta[lane] = s.delta;
+    infinite[lane] = s.infinite;
+    material[lane] = s.material;
+    uv[lane] = s.uv;
+}
+
 QuadLight make_quad_light(Vec3d corner, Vec3d edge_u, Vec3d edge_v, Color radiance,
                           bool two_sided) {
     QuadLight q;

@@ -31,6 +31,18 @@ struct LightSample {
     Vec2f uv;
 };
 
+/// Those of a block.
+struct LightSamples {
+    Vec3Lanes wi, p, p_error, n;
+    Lanes<Color> radiance;
+    float pdf[kLanes];
+    std::uint32_t delta[kLanes], infinite[kLanes];
+    std::int32_t material[kLanes];
+    Lanes<Vec2f> uv;
+
+    void set(int lane, const LightSample& s);
+};
+
 /// Where light is wanted: reduced to what a light may depend on.
 struct LightReference {
     Vec3f p;
@@ -120,7 +132,7 @@ struct EnvironmentLight {
     bool sample(Vec2f u, LightSample& out) const;
     /// Both ways for sixteen lanes at once, with sample_light's and look's bits. sample returns the
     /// lanes that got a sample.
-    LaneMask sample(LaneMask lanes, const SamplePairs& u, LightSample (&out)[kLanes]) const;
+    LaneMask sample(LaneMask lanes, const SamplePairs& u, LightSamples& out) const;
     void look(LaneMask lanes, const Vec3f (&d)[kLanes], Look (&out)[kLanes]) const;
     Vec2f to_uv(Vec3f d) const;
     Vec3f to_direction(Vec2f uv) const;

@@ -71,12 +71,11 @@ LightSet::LightSet(std::vector<Light> lights, const std::vector<double>& powers)
 
 LaneMask LightSet::sample(LaneMask lanes, const LightReference (&refs)[kLanes],
                           const float (&u_choice)[kLanes], const SamplePairs& u,
-                          LightSample (&out)[kLanes]) const noexcept {
+                          LightSamples& out) const noexcept {
     AliasTable::Pick picks[kLanes];
     LaneMask of_kind[std::variant_size_v<Light>] = {};
     for (LaneMask m = lanes; m != 0; m &= m - 1) {
         const int i = std::countr_zero(m);
-        out[i] = LightSample{};
         picks[i] = choice_.sample(u_choice[i]);
         const LaneMask chosen = static_cast<LaneMask>(picks[i].probability > 0.0f);
         of_kind[kinds_[picks[i].index]] |= chosen << i;
@@ -95,15 +94,19 @@ LaneMask LightSet::sample(LaneMask lanes, const LightReference (&refs)[kLanes],
                     if (picks[i].index == picks[first].index) same |= 1u << i;
                 }
                 made |= sky->sample(same, u, out);
-            } else if (sample_light(light, refs[first], u.at(first), out[first])) {
-                made |= same;
+            } else {
+                LightSample s;
+                if (sample_light(light, refs[first], u.at(first), s)) {
+                    made |= same;
+                    out.set(first, s);
+                }
             }
             rest &= ~same;
         }
     }
     for (LaneMask m = made; m != 0; m &= m - 1) {
         const int i = std::countr_zero(m);
-        out[i].pdf *= picks[i].probability;
+        out.pdf[i] *= picks[i].probability;
     }
     return made;
 }

@@ -26,7 +26,7 @@ public:
     /// Returns the lanes that found light.
     LaneMask sample(LaneMask lanes, const LightReference (&refs)[kLanes],
                     const float (&u_choice)[kLanes], const SamplePairs& u,
-                    LightSample (&out)[kLanes]) const noexcept;
+                    LightSamples& out) const noexcept;
     /// Density of sample() for a point of light `index` that a ray from ref has hit.
     float pdf(int index, const LightReference& ref, Vec3f wi, Vec3f p, Vec3f n,
               std::int32_t material) const noexcept;
