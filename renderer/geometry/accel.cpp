@@ -137,11 +137,11 @@ struct Accel::Impl {
             device, part.quads ? RTC_GEOMETRY_TYPE_QUAD : RTC_GEOMETRY_TYPE_TRIANGLE);
         const std::size_t corners = part.quads ? 4 : 3;
         rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                   mesh.positions.data(), 0, sizeof(Vec3f),
-                                   mesh.positions.size() - 1);
+                                   mesh.vertices.data(), 0, mesh.stride * sizeof(float),
+                                   mesh.vertex_count());
         rtcSetSharedGeometryBuffer(
             g, RTC_BUFFER_TYPE_INDEX, 0, part.quads ? RTC_FORMAT_UINT4 : RTC_FORMAT_UINT3,
-            mesh.position_index.data(), mesh.corner(part.first_face) * sizeof(std::uint32_t),
+            mesh.index.data(), mesh.corner(part.first_face) * sizeof(std::uint32_t),
             corners * sizeof(std::uint32_t), part.faces);
         if (part.cutout) test_opacity(g);
         return g;

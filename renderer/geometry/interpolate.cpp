@@ -47,9 +47,8 @@ void texture_frame_to_world(const Affinef& m, SurfacePoint& s) {
 inline Point mesh_point(const Mesh& mesh, std::uint32_t face, const Hit& hit, bool colors,
                         Color& vertex_color) {
     const Corners k = corners_of(mesh, face, hit.u, hit.v);
-    const std::uint32_t ia = mesh.position_index[k.a], ib = mesh.position_index[k.b],
-                        ic = mesh.position_index[k.c];
-    const Vec3f a = mesh.positions[ia], b = mesh.positions[ib], c = mesh.positions[ic];
+    const std::uint32_t ia = mesh.index[k.a], ib = mesh.index[k.b], ic = mesh.index[k.c];
+    const Vec3f a = mesh.position(ia), b = mesh.position(ib), c = mesh.position(ic);
     const Vec3f p = a * k.wa + b * k.wb + c * k.wc;
     // The rounding of the sum (PBRT 4e, eq. 6.24), and that of Embree's plane test, whose products
     // are of differences between the vertices and the ray's origin: as large as the face, whatever
@@ -61,28 +60,24 @@ inline Point mesh_point(const Mesh& mesh, std::uint32_t face, const Hit& hit, bo
     const Vec3f normal = cross(ab, ac);
     const Vec3f ng = normal * (1.0f / std::sqrt(length2(normal)));
     Vec3f ns = ng;
-    if (!mesh.normals.empty()) {
-        const auto& index = mesh.normal_index.empty() ? mesh.position_index : mesh.normal_index;
-        const Vec3f n = mesh.normals[index[k.a]] * k.wa + mesh.normals[index[k.b]] * k.wb +
-                        mesh.normals[index[k.c]] * k.wc;
+    if (mesh.normal_at > 0) {
+        const Vec3f n = mesh.normal(ia) * k.wa + mesh.normal(ib) * k.wb + mesh.normal(ic) * k.wc;
         const float l2 = length2(n);
         if (l2 > 1e-12f) ns = n / std::sqrt(l2);
     }
-    if (colors && !mesh.colors.empty()) {
-        vertex_color = mesh.colors[ia] * k.wa + mesh.colors[ib] * k.wb + mesh.colors[ic] * k.wc;
-    }
+    if (colors && mesh.color_at > 0)
+        vertex_color = mesh.color(ia) * k.wa + mesh.color(ib) * k.wb + mesh.color(ic) * k.wc;
     return {p, error, ng, ns};
 }
 
 void mesh_texture_frame(const Mesh& mesh, const Hit& hit, SurfacePoint& s) {
-    if (mesh.uvs.empty()) return;
+    if (mesh.uv_at == 0) return;
     const Corners k = corners_of(mesh, s.face, hit.u, hit.v);
-    const auto& index = mesh.uv_index.empty() ? mesh.position_index : mesh.uv_index;
-    const Vec2f ta = mesh.uvs[index[k.a]], tb = mesh.uvs[index[k.b]], tc = mesh.uvs[index[k.c]];
+    const std::uint32_t ia = mesh.index[k.a], ib = mesh.index[k.b], ic = mesh.index[k.c];
+    const Vec2f ta = mesh.uv(ia), tb = mesh.uv(ib), tc = mesh.uv(ic);
     s.uv = ta * k.wa + tb * k.wb + tc * k.wc;
-    const Vec3f a = mesh.positions[mesh.position_index[k.a]];
-    const Vec3f ab = mesh.positions[mesh.position_index[k.b]] - a,
-                ac = mesh.positions[mesh.position_index[k.c]] - a;
+    const Vec3f a = mesh.position(ia);
+    const Vec3f ab = mesh.position(ib) - a, ac = mesh.position(ic) - a;
     const Vec2f e1 = tb - ta, e2 = tc - ta;
     const float uv_area2 = e1.x * e2.y - e2.x * e1.y;
     s.uv_per_length = std::sqrt(std::fabs(uv_area2) / length(cross(ab, ac)));
@@ -164,36 +159,22 @@ SurfacePoint surface_point(const Geometry& geometry, const HitTarget& target, co
     return s;
 }
 
-void prefetch_indices(const Geometry& geometry, const HitTarget& target, const Hit& hit,
-                      bool uvs) noexcept {
+void prefetch_index(const Geometry& geometry, const HitTarget& target, const Hit& hit) noexcept {
     const Placement& placed = geometry.placements[target.placement];
     if (placed.kind != PlacedKind::mesh) return;
     const Mesh& mesh = geometry.meshes[placed.shape];
     const std::uint32_t face = mesh.parts[target.part].first_face + hit.prim;
-    const std::size_t corner = mesh.corner(face);
-    __builtin_prefetch(&mesh.position_index[corner]);
-    if (!mesh.normal_index.empty()) __builtin_prefetch(&mesh.normal_index[corner]);
+    __builtin_prefetch(&mesh.index[mesh.corner(face)]);
     if (!mesh.face_material.empty()) __builtin_prefetch(&mesh.face_material[face]);
-    if (uvs && !mesh.uv_index.empty()) __builtin_prefetch(&mesh.uv_index[corner]);
 }
 
-void prefetch_vertices(const Geometry& geometry, const HitTarget& target, const Hit& hit,
-                       bool uvs) noexcept {
+void prefetch_vertices(const Geometry& geometry, const HitTarget& target, const Hit& hit) noexcept {
     const Placement& placed = geometry.placements[target.placement];
     if (placed.kind != PlacedKind::mesh) return;
     const Mesh& mesh = geometry.meshes[placed.shape];
     const std::size_t corner = mesh.corner(mesh.parts[target.part].first_face + hit.prim);
-    const bool normals = !mesh.normals.empty();
-    const std::uint32_t* normal_index =
-        mesh.normal_index.empty() ? mesh.position_index.data() : mesh.normal_index.data();
-    for (std::size_t k = corner; k < corner + 3; ++k) {
-        __builtin_prefetch(&mesh.positions[mesh.position_index[k]]);
-        if (normals) __builtin_prefetch(&mesh.normals[normal_index[k]]);
-    }
-    if (!uvs || mesh.uvs.empty()) return;
-    const std::uint32_t* uv_index =
-        mesh.uv_index.empty() ? mesh.position_index.data() : mesh.uv_index.data();
-    for (std::size_t k = corner; k < corner + 3; ++k) __builtin_prefetch(&mesh.uvs[uv_index[k]]);
+    for (std::size_t k = corner; k < corner + 3; ++k)
+        __builtin_prefetch(mesh.record(mesh.index[k]));
 }
 
 void add_texture_frame(const Geometry& geometry, const Hit& hit, SurfacePoint& s) noexcept {
@@ -204,10 +185,10 @@ void add_texture_frame(const Geometry& geometry, const Hit& hit, SurfacePoint& s
 }
 
 Vec2f surface_uv(const Mesh& mesh, std::uint32_t face, float u, float v) noexcept {
-    if (mesh.uvs.empty()) return {0, 0};
+    if (mesh.uv_at == 0) return {0, 0};
     const Corners k = corners_of(mesh, face, u, v);
-    const auto& index = mesh.uv_index.empty() ? mesh.position_index : mesh.uv_index;
-    return mesh.uvs[index[k.a]] * k.wa + mesh.uvs[index[k.b]] * k.wb + mesh.uvs[index[k.c]] * k.wc;
+    return mesh.uv(mesh.index[k.a]) * k.wa + mesh.uv(mesh.index[k.b]) * k.wb +
+           mesh.uv(mesh.index[k.c]) * k.wc;
 }
 
 }  // namespace tessera

@@ -13,13 +13,10 @@ namespace tessera {
 SurfacePoint surface_point(const Geometry& geometry, const HitTarget& target, const Hit& hit,
                            const Ray& ray, bool colors) noexcept;
 
-/// Asks the cache for what surface_point will read of a mesh: first the indices, later, when those
-/// have come, the vertices. A block's lanes wait for memory together rather than one after the
-/// other. uvs: texture coordinates will be read too.
-void prefetch_indices(const Geometry& geometry, const HitTarget& target, const Hit& hit,
-                      bool uvs) noexcept;
-void prefetch_vertices(const Geometry& geometry, const HitTarget& target, const Hit& hit,
-                       bool uvs) noexcept;
+/// Asks the cache for what surface_point will read of a mesh: first the index, later, when that has
+/// come, the vertices. A block's lanes wait for memory together rather than one after the other.
+void prefetch_index(const Geometry& geometry, const HitTarget& target, const Hit& hit) noexcept;
+void prefetch_vertices(const Geometry& geometry, const HitTarget& target, const Hit& hit) noexcept;
 
 /// Adds uv, dpdu and uv_per_length, for materials that read them.
 void add_texture_frame(const Geometry& geometry, const Hit& hit, SurfacePoint& s) noexcept;

@@ -3,6 +3,7 @@
 // scene's (or, for instanced shapes, the shape's) own origin.
 
 #include <cstdint>
+#include <new>
 #include <vector>
 
 #include "renderer/core/affine.h"
@@ -18,13 +19,50 @@ struct MeshPart {
     bool cutout = false;  // hits are passed to the opacity test
 };
 
+/// Memory that starts on a cache line, so that a record of half a line never lies on two.
+template <class T>
+struct LineAllocator {
+    using value_type = T;
+    static constexpr std::align_val_t kLine{64};
+    LineAllocator() = default;
+    template <class U>
+    LineAllocator(const LineAllocator<U>&) {}
+    T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), kLine)); }
+    void deallocate(T* p, std::size_t) { ::operator delete(p, kLine); }
+    bool operator==(const LineAllocator&) const = default;
+};
+
 struct Mesh {
-    std::vector<Vec3f> positions;  // one more than used: Embree reads 16 bytes at the last vertex
-    std::vector<Vec3f> normals;
-    std::vector<Vec2f> uvs;
-    std::vector<Color> colors;  // per position
-    std::vector<std::uint32_t> position_index, normal_index,
-        uv_index;                              // 3 per triangle, then 4 per quad
+    /// Vertices as records of `stride` floats: position, then normal, texture coordinates, colour
+    /// where the mesh has them. One float more than used: Embree reads 16 bytes at a position.
+    std::vector<float, LineAllocator<float>> vertices;
+    std::uint32_t stride = 3, normal_at = 0, uv_at = 0,
+                  color_at = 0;        // in floats; 0: there is none
+    std::vector<std::uint32_t> index;  // 3 per triangle, then 4 per quad
+
+    /// Sets the record; before any vertex is added.
+    void lay_out(bool normals, bool uvs, bool colors);
+    /// Adds a vertex with the position; the rest is zero. Returns its record.
+    float* add_vertex(Vec3f position);
+    /// After the last vertex.
+    void finish_vertices() { vertices.push_back(0); }
+
+    const float* record(std::uint32_t vertex) const noexcept {
+        return &vertices[std::size_t(vertex) * stride];
+    }
+    std::size_t vertex_count() const noexcept { return vertices.size() / stride; }
+    Vec3f position(std::uint32_t vertex) const noexcept { return triple(vertex, 0); }
+    Vec3f normal(std::uint32_t vertex) const noexcept { return triple(vertex, normal_at); }
+    Color color(std::uint32_t vertex) const noexcept { return triple(vertex, color_at); }
+    Vec2f uv(std::uint32_t vertex) const noexcept {
+        const float* r = record(vertex) + uv_at;
+        return {r[0], r[1]};
+    }
+    Vec3f triple(std::uint32_t vertex, std::uint32_t at) const noexcept {
+        const float* r = record(vertex) + at;
+        return {r[0], r[1], r[2]};
+    }
+
     std::vector<std::uint16_t> face_material;  // slot; empty: slot 0
     std::vector<std::uint32_t> face_object;    // empty: 0
     std::vector<std::int32_t> materials;       // slot -> scene material
@@ -32,7 +70,7 @@ struct Mesh {
     std::uint32_t triangles = 0, quads = 0;
 
     std::uint32_t faces() const noexcept { return triangles + quads; }
-    /// First entry of a face in the index arrays.
+    /// First entry of a face in the index.
     std::size_t corner(std::uint32_t face) const noexcept {
         return face < triangles ? std::size_t(face) * 3
                                 : std::size_t(triangles) * 3 + std::size_t(face - triangles) * 4;

@@ -101,19 +101,19 @@ private:
             scene_.accel().intersect(packet_, alive_, seeds_);
             each(alive_, [&](int i) {
                 hit_[i] = packet_.hit(i);
-                ask_for_indices(i);
+                ask_for_index(i);
             });
         } else {
             each(alive_, [&](int i) {
                 if (job_.log) job_.log->single(ray_[i], seeds_[i], false);
                 scene_.accel().intersect(ray_[i], seeds_[i], hit_[i]);
-                ask_for_indices(i);
+                ask_for_index(i);
             });
         }
         escaped_ = 0;
         each(alive_, [&](int i) {
             if (hit_[i].valid()) {
-                prefetch_vertices(scene_.geometry(), target_[i], hit_[i], F.textures);
+                prefetch_vertices(scene_.geometry(), target_[i], hit_[i]);
             } else {
                 escaped_ |= 1u << i;
             }
@@ -121,10 +121,10 @@ private:
         alive_ &= ~escaped_;
     }
 
-    void ask_for_indices(int i) noexcept {
+    void ask_for_index(int i) noexcept {
         if (!hit_[i].valid()) return;
         target_[i] = scene_.accel().target(hit_[i]);
-        prefetch_indices(scene_.geometry(), target_[i], hit_[i], F.textures);
+        prefetch_index(scene_.geometry(), target_[i], hit_[i]);
     }
 
     // ---- escape: what the rays that hit nothing see

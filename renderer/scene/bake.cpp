@@ -20,45 +20,97 @@ bool degenerate(const std::vector<Vec3f>& p, const std::uint32_t* v, bool quad) 
     return !(area(0, 1, 3) > 0.0f) && !(area(2, 3, 1) > 0.0f);
 }
 
-// Copies a face's corners; mirrored: the other way round, the first corner kept.
-void copy_corners(const std::uint32_t* from, bool quad, bool mirrored,
-                  std::vector<std::uint32_t>& to) {
-    const std::uint32_t n = quad ? 4 : 3;
-    to.push_back(from[0]);
-    for (std::uint32_t i = 1; i < n; ++i) to.push_back(from[mirrored ? n - i : i]);
+Vec3f baked_normal(const MeshDesc& desc, std::size_t i, const Affined& place) {
+    const Vec3d n = place.normal(
+        Vec3d(Vec3f{desc.normals[3 * i], desc.normals[3 * i + 1], desc.normals[3 * i + 2]}));
+    const double l = length(n);
+    return l > 0 ? Vec3f(n / l) : Vec3f{0, 0, 0};
 }
+
+// The description's separate indices made one: a vertex for each position, normal and texture
+// coordinate that some corner joins. Without separate indices they are the positions, as they are.
+class VertexJoiner {
+public:
+    VertexJoiner(const MeshDesc& desc, const Affined& place, const std::vector<Vec3f>& positions,
+                 Mesh& mesh)
+        : desc_(desc),
+          place_(place),
+          positions_(positions),
+          mesh_(mesh),
+          separate_((mesh.normal_at > 0 && !desc.normal_index.empty()) ||
+                    (mesh.uv_at > 0 && !desc.uv_index.empty())) {
+        mesh.vertices.reserve(positions.size() * mesh.stride + 1);
+        if (separate_) {
+            first_.assign(positions.size(), kNone);
+        } else {
+            for (std::uint32_t v = 0; v < positions.size(); ++v) add(v, v, v);
+        }
+    }
+
+    // The vertex of an entry of the description's index.
+    std::uint32_t vertex(std::size_t corner) {
+        const std::uint32_t p = desc_.position_index[corner];
+        if (!separate_) return p;
+        const std::uint32_t n = mesh_.normal_at == 0
+                                    ? 0
+                                    : (desc_.normal_index.empty() ? p : desc_.normal_index[corner]);
+        const std::uint32_t t =
+            mesh_.uv_at == 0 ? 0 : (desc_.uv_index.empty() ? p : desc_.uv_index[corner]);
+        for (std::uint32_t v = first_[p]; v != kNone; v = joined_[v].next)
+            if (joined_[v].normal == n && joined_[v].uv == t) return v;
+        const auto v = static_cast<std::uint32_t>(joined_.size());
+        joined_.push_back({n, t, first_[p]});
+        first_[p] = v;
+        add(p, n, t);
+        return v;
+    }
+
+private:
+    static constexpr std::uint32_t kNone = 0xffffffffu;
+    struct Joined {
+        std::uint32_t normal, uv, next;
+    };
+
+    void add(std::uint32_t p, std::uint32_t n, std::uint32_t t) {
+        float* record = mesh_.add_vertex(positions_[p]);
+        if (mesh_.normal_at > 0) {
+            const Vec3f normal = baked_normal(desc_, n, place_);
+            record[mesh_.normal_at] = normal.x;
+            record[mesh_.normal_at + 1] = normal.y;
+            record[mesh_.normal_at + 2] = normal.z;
+        }
+        if (mesh_.uv_at > 0) std::copy_n(&desc_.uvs[2 * std::size_t(t)], 2, record + mesh_.uv_at);
+        if (mesh_.color_at > 0)
+            std::copy_n(&desc_.colors[3 * std::size_t(p)], 3, record + mesh_.color_at);
+    }
+
+    const MeshDesc& desc_;
+    const Affined& place_;
+    const std::vector<Vec3f>& positions_;
+    Mesh& mesh_;
+    bool separate_;
+    std::vector<std::uint32_t> first_;  // per position: its newest vertex
+    std::vector<Joined> joined_;
+};
 
 }  // namespace
 
 Mesh bake_mesh(const MeshDesc& desc, const Affined& place, const BakeNeeds& needs,
                BakeReport& report) {
     Mesh mesh;
-    const std::size_t vertices = desc.positions.size() / 3;
-    mesh.positions.reserve(vertices + 1);
-    for (std::size_t i = 0; i < vertices; ++i) {
-        mesh.positions.push_back(Vec3f(place.point(
-            {desc.positions[3 * i], desc.positions[3 * i + 1], desc.positions[3 * i + 2]})));
+    std::vector<Vec3f> positions;
+    positions.reserve(desc.positions.size() / 3);
+    for (std::size_t i = 0; i + 2 < desc.positions.size(); i += 3) {
+        positions.push_back(
+            Vec3f(place.point({desc.positions[i], desc.positions[i + 1], desc.positions[i + 2]})));
     }
     const bool mirrored = place.determinant() < 0;
-    for (std::size_t i = 0; i + 2 < desc.normals.size(); i += 3) {
-        const Vec3d n =
-            place.normal(Vec3d(Vec3f{desc.normals[i], desc.normals[i + 1], desc.normals[i + 2]}));
-        const double l = length(n);
-        mesh.normals.push_back(l > 0 ? Vec3f(n / l) : Vec3f{0, 0, 0});
-    }
-    if (needs.uvs) {
-        for (std::size_t i = 0; i + 1 < desc.uvs.size(); i += 2)
-            mesh.uvs.push_back({desc.uvs[i], desc.uvs[i + 1]});
-    } else {
+    mesh.lay_out(!desc.normals.empty(), needs.uvs && !desc.uvs.empty(),
+                 needs.colors && !desc.colors.empty());
+    if (!needs.uvs)
         report.dropped_uvs +=
             (desc.uvs.size() * sizeof(float)) + desc.uv_index.size() * sizeof(std::uint32_t);
-    }
-    if (needs.colors) {
-        for (std::size_t i = 0; i + 2 < desc.colors.size(); i += 3)
-            mesh.colors.push_back({desc.colors[i], desc.colors[i + 1], desc.colors[i + 2]});
-    } else {
-        report.dropped_colors += desc.colors.size() * sizeof(float);
-    }
+    if (!needs.colors) report.dropped_colors += desc.colors.size() * sizeof(float);
     mesh.materials.assign(desc.materials.begin(), desc.materials.end());
     if (mesh.materials.empty()) mesh.materials.push_back(-1);
 
@@ -72,7 +124,7 @@ Mesh bake_mesh(const MeshDesc& desc, const Affined& place, const BakeNeeds& need
     faces.reserve(desc.triangles + desc.quads);
     for (std::uint32_t f = 0; f < desc.triangles + desc.quads; ++f) {
         const bool quad = f >= desc.triangles;
-        if (degenerate(mesh.positions, &desc.position_index[corner(f)], quad)) {
+        if (degenerate(positions, &desc.position_index[corner(f)], quad)) {
             ++report.degenerate;
             continue;
         }
@@ -85,6 +137,7 @@ Mesh bake_mesh(const MeshDesc& desc, const Affined& place, const BakeNeeds& need
         return a.quad != b.quad ? a.quad < b.quad : a.cutout < b.cutout;
     });
 
+    VertexJoiner joiner(desc, place, positions, mesh);
     for (std::uint32_t i = 0; i < faces.size(); ++i) {
         const Face& f = faces[i];
         if (mesh.parts.empty() || mesh.parts.back().quads != f.quad ||
@@ -93,16 +146,18 @@ Mesh bake_mesh(const MeshDesc& desc, const Affined& place, const BakeNeeds& need
         }
         ++mesh.parts.back().faces;
         ++(f.quad == kQuad ? mesh.quads : mesh.triangles);
-        copy_corners(&desc.position_index[corner(f.index)], f.quad, mirrored, mesh.position_index);
-        if (!desc.normal_index.empty())
-            copy_corners(&desc.normal_index[corner(f.index)], f.quad, mirrored, mesh.normal_index);
-        if (!desc.uv_index.empty() && !mesh.uvs.empty())
-            copy_corners(&desc.uv_index[corner(f.index)], f.quad, mirrored, mesh.uv_index);
+        // Mirrored: the other way round, the first corner kept.
+        const std::uint32_t corners = f.quad ? 4 : 3;
+        for (std::uint32_t c = 0; c < corners; ++c) {
+            const std::uint32_t from = mirrored && c > 0 ? corners - c : c;
+            mesh.index.push_back(joiner.vertex(corner(f.index) + from));
+        }
         if (!desc.face_material.empty())
             mesh.face_material.push_back(static_cast<std::uint16_t>(desc.face_material[f.index]));
         if (!desc.face_object.empty()) mesh.face_object.push_back(desc.face_object[f.index]);
     }
-    mesh.positions.push_back({});
+    mesh.finish_vertices();
+    mesh.vertices.shrink_to_fit();
     return mesh;
 }
 

@@ -89,9 +89,12 @@ struct EmitterBuilder {
             return;
         }
         Mesh body;
-        body.positions = {
-            q.corner, q.corner + q.edge_u, q.corner + q.edge_u + q.edge_v, q.corner + q.edge_v, {}};
-        body.position_index = {0, 1, 2, 3};
+        for (const Vec3f corner :
+             {q.corner, q.corner + q.edge_u, q.corner + q.edge_u + q.edge_v, q.corner + q.edge_v}) {
+            body.add_vertex(corner);
+        }
+        body.finish_vertices();
+        body.index = {0, 1, 2, 3};
         body.quads = 1;
         body.parts = {{0, 1, true, false}};
         body.materials = {-1};
@@ -236,11 +239,9 @@ struct EmitterBuilder {
             Vec3f p[3];
             Vec2f t[3];
             for (int c = 0; c < 3; ++c) {
-                p[c] =
-                    Vec3f(to_world.point(Vec3d(mesh.positions[mesh.position_index[first + k[c]]])));
-                if (!mesh.uvs.empty())
-                    t[c] = mesh.uvs[(mesh.uv_index.empty() ? mesh.position_index
-                                                           : mesh.uv_index)[first + k[c]]];
+                const std::uint32_t vertex = mesh.index[first + k[c]];
+                p[c] = Vec3f(to_world.point(Vec3d(mesh.position(vertex))));
+                if (mesh.uv_at > 0) t[c] = mesh.uv(vertex);
             }
             const double area =
                 0.5 * length(cross(Vec3d(p[1]) - Vec3d(p[0]), Vec3d(p[2]) - Vec3d(p[0])));

@@ -30,16 +30,15 @@ Geometry one_face(const Probe& probe, std::mt19937& rng) {
     };
     Mesh mesh;
     const Vec3f a = corner(), b = corner(), c = corner();
-    mesh.positions = {a, b, c, {}};
-    mesh.position_index = {0, 1, 2};
     mesh.materials = {0};
-    if (probe.quads) {
-        mesh.positions = {a, b, a + (b - a) * 0.9f + (c - a), c, {}};
-        mesh.position_index = {0, 1, 2, 3};
-        mesh.quads = 1;
-    } else {
-        mesh.triangles = 1;
-    }
+    mesh.add_vertex(a);
+    mesh.add_vertex(b);
+    if (probe.quads) mesh.add_vertex(a + (b - a) * 0.9f + (c - a));
+    mesh.add_vertex(c);
+    mesh.finish_vertices();
+    mesh.index =
+        probe.quads ? std::vector<std::uint32_t>{0, 1, 2, 3} : std::vector<std::uint32_t>{0, 1, 2};
+    ++(probe.quads ? mesh.quads : mesh.triangles);
     mesh.parts = {{0, 1, probe.quads, false}};
     Geometry g;
     g.meshes.push_back(mesh);
@@ -57,8 +56,8 @@ Geometry one_face(const Probe& probe, std::mt19937& rng) {
 // Faces with an aspect beyond 50 have a plane that single precision does not know; they are the
 // stress suite's matter.
 bool fair(const Geometry& g) {
-    const auto& p = g.meshes[0].positions;
-    const Vec3f e1 = p[1] - p[0], e2 = p[2] - p[0];
+    const Mesh& mesh = g.meshes[0];
+    const Vec3f e1 = mesh.position(1) - mesh.position(0), e2 = mesh.position(2) - mesh.position(0);
     const float longest = std::fmax(length2(e1), std::fmax(length2(e2), length2(e2 - e1)));
     const Affinef& m = g.placements[0].to_world;
     const float stretch = std::fmax(length(m.x), std::fmax(length(m.y), length(m.z)));
