@@ -90,7 +90,9 @@ QuadLight make_quad(Vec3f corner, Vec3f u, Vec3f v) {
 }
 
 // The mesh light of a scene, two materials of unlike brightness, as the scene's builder makes it.
-LightCase mesh_case(std::string name, Vec3f ref) {
+// place: beside the mesh itself, which makes both of them instances; the light is that of `place`.
+LightCase mesh_case(std::string name, Vec3f ref,
+                    const std::optional<Matrix34>& place_at = std::nullopt) {
     SceneDesc scene;
     const int dim = add(scene, glowing(1)), bright = add(scene, glowing(7));
     MeshDesc mesh = quad_mesh({{-1, 2, 0},
@@ -105,6 +107,7 @@ LightCase mesh_case(std::string name, Vec3f ref) {
     mesh.materials = {dim, bright};
     mesh.face_material = {0, 1};
     add_mesh(scene, mesh);
+    if (place_at) scene.instances[0].transforms = {*place_at, kIdentity34};
     const ScenePtr built = build_scene(std::move(scene));
     LightCase c{std::move(name),
                 std::make_shared<Light>(built->lights()[0]),
@@ -112,12 +115,18 @@ LightCase mesh_case(std::string name, Vec3f ref) {
                 Vec3d{0, 2.4, 0.5} - Vec3d(ref),
                 {},
                 Vec3d{0.01, 0.2, 1}};
+    const auto& mesh_light = std::get<MeshLight>(*c.light);
+    REQUIRE(mesh_light.placed == place_at.has_value());
+    if (place_at) c.axis = Affined(mesh_light.to_world).point({0, 2.4, 0.5}) - Vec3d(ref);
     c.pdf = [ref, light = c.light](Vec3d w) {
         double sum = 0;
-        for (const auto& t : std::get<MeshLight>(*light).faces->triangles) {
-            const Vec3d ab(t.ab), ac(t.ac), n = cross(ab, ac);
-            const double along = dot(Vec3d(t.a - ref), n) / dot(w, n);
-            const Vec3d d = Vec3d(ref) + w * along - Vec3d(t.a);
+        const auto& l = std::get<MeshLight>(*light);
+        const Affined m = l.placed ? Affined(l.to_world) : Affined();
+        for (const auto& t : l.faces->triangles) {
+            const Vec3d ab = m.vector(Vec3d(t.ab)), ac = m.vector(Vec3d(t.ac)), n = cross(ab, ac);
+            const Vec3d a = m.point(Vec3d(t.a));
+            const double along = dot(a - Vec3d(ref), n) / dot(w, n);
+            const Vec3d d = Vec3d(ref) + w * along - a;
             const double u = dot(cross(d, ac), n) / length2(n),
                          v = dot(cross(ab, d), n) / length2(n);
             if (u >= 0 && v >= 0 && u + v <= 1)
@@ -190,6 +199,10 @@ std::vector<LightCase> all_lights() {
             mesh_case("mesh near", {0.3f, 1, 0.4f}),
             mesh_case("mesh far", {10, -30, 15}),
             mesh_case("mesh from behind", {0.3f, 3, -3}),
+            mesh_case("mesh sheared and mirrored", {0.3f, 1, 0.4f},
+                      Matrix34{-0.7, 0.4, 0.1, 0.2, 0, 1.1, 0.3, 0.5, 0.2, -0.1, 0.6, 0.1}),
+            mesh_case("mesh flattened", {0.3f, 1, 0.4f},
+                      Matrix34{1, 0, 0, 0, 0, 0.2, 0, 2, 0, 0, 1, 0}),
             sky_case("sky constant", make_constant_environment(Color(1.0f), true), {0, 1, 0}),
             sky_case("sky image, even", even, {0, 1, 0}),
             sky_case("sky image, hot texel", hot_pixel(32, 16, 500, 40), {0.3, 0.5, -0.6}),
@@ -250,7 +263,85 @@ std::string sample_failure(const LightCase& c) {
     return {};
 }
 
+// Sixteen samples of a light set.
+struct Drawn {
+    SamplePairs u;
+    float choice[kLanes];
+    LightSamples samples;
+    LaneMask made = 0;
+
+    LightSample sample(int lane) const {
+        LightSample s;
+        s.wi = samples.wi[lane], s.pdf = samples.pdf[lane];
+        s.radiance = samples.radiance[lane];
+        s.delta = samples.delta[lane] != 0, s.infinite = samples.infinite[lane] != 0;
+        s.material = samples.material[lane];
+        if (!s.infinite)
+            s.p = samples.p[lane], s.p_error = samples.p_error[lane], s.n = samples.n[lane];
+        return s;
+    }
+};
+
+Drawn draw(const LightSet& set, Vec3f ref, Random& n, LaneMask lanes = kAllLanes) {
+    Drawn d;
+    LightReference refs[kLanes];
+    for (int i = 0; i < kLanes; ++i) {
+        refs[i] = {ref};
+        d.choice[i] = n.unit();
+        const Vec2f u = n.pair();
+        d.u.x[i] = u.x, d.u.y[i] = u.y;
+    }
+    d.made = set.sample(lanes, refs, d.choice, d.u, d.samples);
+    return d;
+}
+
 }  // namespace
+
+TEST_CASE("light set: a lane's sample is sample_light's, whichever lanes are asked for with it") {
+    std::vector<Light> lights;
+    for (const LightCase& c : all_lights())
+        if (!c.name.starts_with("sky constant")) lights.push_back(*c.light);
+    const LightSet set(lights, std::vector<double>(lights.size(), 1.0));
+    const Vec3f ref{0.15f, 0.9f, 0.25f};
+    for (int i = 0; i < 2000; ++i) {
+        Random again(static_cast<std::uint64_t>(i)), n(static_cast<std::uint64_t>(i));
+        const Drawn all = draw(set, ref, n);
+        const auto lanes = static_cast<LaneMask>((i * 2654435761u) >> 16) & kAllLanes;
+        const Drawn some = draw(set, ref, again, lanes);
+        REQUIRE(some.made == (all.made & lanes));
+        for (int lane = 0; lane < kLanes; ++lane) {
+            if (((some.made >> lane) & 1u) == 0) continue;
+            const LightSample a = all.sample(lane), b = some.sample(lane);
+            REQUIRE(a.wi == b.wi);
+            REQUIRE(a.pdf == b.pdf);
+            REQUIRE(a.radiance == b.radiance);
+            // One of the lights gives it by itself.
+            bool found = false;
+            for (const Light& light : lights) {
+                LightSample own;
+                found |= sample_light(light, {ref}, all.u.at(lane), own) && own.wi == a.wi &&
+                         own.radiance == a.radiance && own.p == a.p && own.n == a.n;
+            }
+            REQUIRE(found);
+        }
+    }
+}
+
+TEST_CASE("environment: sixteen look-ups are look()'s") {
+    const EnvironmentLight sky = hot_pixel(32, 16, 500, 40);
+    Random n(12);
+    for (int i = 0; i < 1000; ++i) {
+        Vec3f d[kLanes];
+        for (Vec3f& w : d) w = Vec3f(n.direction());
+        EnvironmentLight::Look seen[kLanes];
+        sky.look(0x5555u, d, seen);
+        for (int lane = 0; lane < kLanes; lane += 2) {
+            const EnvironmentLight::Look one = sky.look(d[lane]);
+            REQUIRE(seen[lane].radiance == one.radiance);
+            REQUIRE(seen[lane].pdf == one.pdf);
+        }
+    }
+}
 
 TEST_CASE(
     "lights: directions are made with the density that light_pdf gives, which integrates to one") {
@@ -280,22 +371,25 @@ TEST_CASE("light set: the density of a sample includes the choice of the light")
     std::vector<double> chosen(lights.size());
     constexpr int kTries = 200000;
     int made = 0;
-    for (int i = 0; i < kTries; ++i) {
-        LightSample s;
-        const float choice = n.unit();
-        const Vec2f u = n.pair();
-        if (!set.sample({ref}, choice, u, s)) continue;
-        ++made;
-        // Which light was it? The one that gives this very sample for the same numbers.
-        for (std::size_t l = 0; l < lights.size(); ++l) {
-            LightSample own;
-            if (!sample_light(lights[l], {ref}, u, own) || !(own.p == s.p)) continue;
-            const auto index = static_cast<int>(l);
-            const double claimed_pdf =
-                static_cast<double>(set.pdf(index, {ref}, s.wi, s.p, s.n, s.material));
-            if (claimed_pdf > 0 && std::fabs(claimed_pdf / static_cast<double>(s.pdf) - 1) < 2e-3) {
-                ++chosen[l];
-                break;
+    for (int i = 0; i < kTries; i += kLanes) {
+        const Drawn drawn = draw(set, ref, n);
+        for (int lane = 0; lane < kLanes; ++lane) {
+            if (((drawn.made >> lane) & 1u) == 0) continue;
+            const LightSample s = drawn.sample(lane);
+            ++made;
+            // Which light was it? The one that gives this very sample for the same numbers.
+            for (std::size_t l = 0; l < lights.size(); ++l) {
+                LightSample own;
+                if (!sample_light(lights[l], {ref}, drawn.u.at(lane), own) || !(own.p == s.p))
+                    continue;
+                const auto index = static_cast<int>(l);
+                const double claimed_pdf =
+                    static_cast<double>(set.pdf(index, {ref}, s.wi, s.p, s.n, s.material));
+                if (claimed_pdf > 0 &&
+                    std::fabs(claimed_pdf / static_cast<double>(s.pdf) - 1) < 2e-3) {
+                    ++chosen[l];
+                    break;
+                }
             }
         }
     }
@@ -331,13 +425,14 @@ TEST_CASE("light set: the estimate of all light is the sum over the lights") {
     Random n(8);
     Mean together;
     std::vector<Mean> apart(lights.size());
-    for (int i = 0; i < 400000; ++i) {
-        LightSample s;
-        const float choice = n.unit();
-        together.add(set.sample({ref}, choice, n.pair(), s) ? received(s) : 0);
-        for (std::size_t l = 0; l < lights.size(); ++l) {
-            LightSample own;
-            apart[l].add(sample_light(lights[l], {ref}, n.pair(), own) ? received(own) : 0);
+    for (int i = 0; i < 400000; i += kLanes) {
+        const Drawn drawn = draw(set, ref, n);
+        for (int lane = 0; lane < kLanes; ++lane) {
+            together.add(((drawn.made >> lane) & 1u) != 0 ? received(drawn.sample(lane)) : 0);
+            for (std::size_t l = 0; l < lights.size(); ++l) {
+                LightSample own;
+                apart[l].add(sample_light(lights[l], {ref}, n.pair(), own) ? received(own) : 0);
+            }
         }
     }
     double sum = 0, variance = together.error() * together.error();

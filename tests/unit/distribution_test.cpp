@@ -8,7 +8,7 @@
 
 using namespace tessera;
 
-TEST_CASE("distribution 2d: the guided search finds the cell that the cumulative says") {
+TEST_CASE("distribution 2d: the search finds the cell that the cumulative says") {
     std::mt19937 rng(5);
     std::uniform_real_distribution<float> u(0, 1);
     constexpr int kWidth = 37, kHeight = 11;
