@@ -36,29 +36,46 @@ inline float to_unit(std::uint32_t bits) {
     return static_cast<float>(static_cast<std::int32_t>(bits >> 8)) * 0x1p-24f;
 }
 
-inline void point(std::uint32_t seed, std::uint32_t reversed_index, std::uint32_t pair, float& x,
-                  float& y) {
-    const std::uint32_t s0 = hash_combine(seed, pair);
-    const std::uint32_t s1 = hash_u32(s0 + 0x9e3779b9u);
-    const std::uint32_t s2 = hash_u32(s0 + 0x3c6ef372u);
-    const std::uint32_t shuffled = reverse_bits(laine_karras(reversed_index, s0));
-    x = to_unit(reverse_bits(laine_karras(shuffled, s1)));
-    y = to_unit(reverse_bits(laine_karras(sobol_1_reversed(shuffled), s2)));
-}
+struct Scramble {
+    std::uint32_t seed, shuffled;  // of the pair, and the index shuffled by it, bit-reversed
+    Scramble(std::uint32_t pixel_seed, std::uint32_t reversed_index, std::uint32_t pair)
+        : seed(hash_combine(pixel_seed, pair)),
+          shuffled(reverse_bits(laine_karras(reversed_index, seed))) {}
+    float x() const {
+        return to_unit(reverse_bits(laine_karras(shuffled, hash_u32(seed + 0x9e3779b9u))));
+    }
+    float y() const {
+        return to_unit(
+            reverse_bits(laine_karras(sobol_1_reversed(shuffled), hash_u32(seed + 0x3c6ef372u))));
+    }
+};
 
 }  // namespace
 
 void sample_pairs(const std::uint32_t (&pixel_seeds)[kLanes], std::uint32_t index,
                   std::uint32_t pair, SamplePairs& out) noexcept {
     const std::uint32_t reversed = reverse_bits(index);
+    for (int lane = 0; lane < kLanes; ++lane) {
+        const Scramble s(pixel_seeds[lane], reversed, pair);
+        out.x[lane] = s.x();
+        out.y[lane] = s.y();
+    }
+}
+
+void sample_singles(const std::uint32_t (&pixel_seeds)[kLanes], std::uint32_t index,
+                    std::uint32_t pair, float (&out)[kLanes]) noexcept {
+    const std::uint32_t reversed = reverse_bits(index);
     for (int lane = 0; lane < kLanes; ++lane)
-        point(pixel_seeds[lane], reversed, pair, out.x[lane], out.y[lane]);
+        out[lane] = Scramble(pixel_seeds[lane], reversed, pair).x();
 }
 
 Vec2f sample_pair(std::uint32_t pixel_seed, std::uint32_t index, std::uint32_t pair) noexcept {
-    Vec2f p;
-    point(pixel_seed, reverse_bits(index), pair, p.x, p.y);
-    return p;
+    const Scramble s(pixel_seed, reverse_bits(index), pair);
+    return {s.x(), s.y()};
+}
+
+float sample_single(std::uint32_t pixel_seed, std::uint32_t index, std::uint32_t pair) noexcept {
+    return Scramble(pixel_seed, reverse_bits(index), pair).x();
 }
 
 }  // namespace tessera

@@ -61,4 +61,9 @@ void sample_pairs(const std::uint32_t (&pixel_seeds)[kLanes], std::uint32_t inde
 /// One lane of the above.
 Vec2f sample_pair(std::uint32_t pixel_seed, std::uint32_t index, std::uint32_t pair) noexcept;
 
+/// The first of a pair alone.
+void sample_singles(const std::uint32_t (&pixel_seeds)[kLanes], std::uint32_t index,
+                    std::uint32_t pair, float (&out)[kLanes]) noexcept;
+float sample_single(std::uint32_t pixel_seed, std::uint32_t index, std::uint32_t pair) noexcept;
+
 }  // namespace tessera

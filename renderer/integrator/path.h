@@ -45,6 +45,9 @@ public:
     }
 
 private:
+    // Up to so many lanes are drawn for one by one.
+    static constexpr int kFew = 3;
+
     // Calls f(lane) for every lane of the mask as it is now; f may take lanes out of `alive_`.
     template <class Function>
     static void each(LaneMask lanes, Function f) {
@@ -154,13 +157,17 @@ private:
     // All lanes at once are vectorised; a few alone are cheaper one by one. The points are the
     // same.
     void draw(std::uint32_t pair, SamplePairs& out) noexcept {
-        constexpr int kFew = 3;
         if (std::popcount(alive_) > kFew) return sample_pairs(job_.seeds, job_.index, pair, out);
         each(alive_, [&](int i) {
             const Vec2f p = sample_pair(job_.seeds[i], job_.index, pair);
             out.x[i] = p.x;
             out.y[i] = p.y;
         });
+    }
+
+    void draw(std::uint32_t pair, float (&out)[kLanes]) noexcept {
+        if (std::popcount(alive_) > kFew) return sample_singles(job_.seeds, job_.index, pair, out);
+        each(alive_, [&](int i) { out[i] = sample_single(job_.seeds[i], job_.index, pair); });
     }
 
     // ---- arrive: the surface, and the light it sends of itself
@@ -359,7 +366,7 @@ private:
         if (depth >= static_cast<std::uint32_t>(settings_.min_depth)) {
             const float survive = std::min(max_component(throughput_[i]) * eta_scale_[i], 1.0f);
             if (survive < 1.0f) {
-                if (roulette_u_.x[i] >= survive) return false;
+                if (roulette_u_[i] >= survive) return false;
                 throughput_[i] *= 1.0f / survive;
             }
         }
@@ -417,7 +424,8 @@ private:
     Counters& counters_;
     LaneMask alive_ = 0, escaped_ = 0, shadow_lanes_ = 0;
     std::uint32_t seeds_[kLanes];
-    SamplePairs light_u_, choice_u_, bsdf_u_, roulette_u_;
+    SamplePairs light_u_, choice_u_, bsdf_u_;
+    float roulette_u_[kLanes];
 
     // The paths.
     Lanes<Ray> ray_;

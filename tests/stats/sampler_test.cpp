@@ -229,6 +229,22 @@ TEST_CASE("warps: each makes the density that its comment claims") {
                      kTries / 8.0) > 0.001);
 }
 
+TEST_CASE("sampler: the first of a pair alone is the first of the pair, one lane or all") {
+    std::uint32_t seeds[kLanes];
+    for (std::uint32_t i = 0; i < kLanes; ++i) seeds[i] = pixel_seed(static_cast<int>(i), 3, 7);
+    for (std::uint32_t index = 0; index < 300; ++index) {
+        SamplePairs pairs;
+        float singles[kLanes];
+        sample_pairs(seeds, index, 11, pairs);
+        sample_singles(seeds, index, 11, singles);
+        for (int i = 0; i < kLanes; ++i) {
+            REQUIRE(singles[i] == pairs.x[i]);
+            REQUIRE(sample_single(seeds[i], index, 11) == pairs.x[i]);
+            REQUIRE(sample_pair(seeds[i], index, 11) == pairs.at(i));
+        }
+    }
+}
+
 TEST_CASE("power heuristic: the two weights of a direction add to one") {
     Random n(2);
     for (int i = 0; i < 1000; ++i) {
