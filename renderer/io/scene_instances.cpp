@@ -117,10 +117,10 @@ void read_groups(const Value& document, SceneReader& reader, ShapeNames& names) 
         if (!members[g]) continue;
         for (const Value& table : *members[g]->list()) {
             const std::string name =
-                all[g].name.empty() ? std::to_string(g + 1) : "'" + all[g].name + "'";
-            const std::string number = std::to_string(all[g].members.size() + 1);
-            all[g].members.push_back(
-                placer.instance(table, {reader.problems, "group " + name + ": member " + number}));
+                all[g].name.empty() ? "[" + std::to_string(g) + "]" : " '" + all[g].name + "'";
+            const std::string number = std::to_string(all[g].members.size());
+            all[g].members.push_back(placer.instance(
+                table, {reader.problems, "group" + name + ": members[" + number + "]"}));
         }
     }
 }

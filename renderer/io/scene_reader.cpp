@@ -55,7 +55,7 @@ int SceneReader::default_material() {
 std::string subject_of(const std::string& kind, const Value& table, std::size_t index) {
     const Value* name = table.find("name");
     if (name && name->text()) return kind + " '" + *name->text() + "'";
-    return kind + " " + std::to_string(index + 1);
+    return kind + "[" + std::to_string(index) + "]";  // as --set names it
 }
 
 }  // namespace tessera

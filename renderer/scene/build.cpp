@@ -38,6 +38,10 @@ public:
         place_origin();
         place_shapes();
         make_lights();
+        if (desc_.camera.projection == Projection::orthographic && desc_.camera.aperture_radius > 0)
+            problems_.warn(
+                desc_.camera.loc,
+                "camera: an orthographic camera has no lens, aperture_radius is not used");
         scene_->camera_ = Camera(desc_.camera, desc_.film.width, desc_.film.height, scene_->origin_,
                                  scene_->bounds_min_, scene_->bounds_max_);
         problems_.throw_if_any();
@@ -89,8 +93,20 @@ private:
                 std::make_unique<TextureStore>(requests, *scene_->colors_, problems_);
         }
         textures_left_out_ = n - requests.size();
+        for (std::size_t i = 0; i < desc_.materials.size(); ++i) {
+            if (used_[i]) say_what_is_simplified(desc_.materials[i]);
+        }
         for (const MaterialDesc& m : desc_.materials)
             scene_->programs_.emplace_back(remapped(m, remap));
+    }
+
+    void say_what_is_simplified(const MaterialDesc& m) {
+        const bool rough = m.specular_roughness.value > 0 || m.specular_roughness.texture >= 0;
+        const bool clear = m.transmission_weight.value > 0 || m.transmission_weight.texture >= 0;
+        if (m.geometry_thin_walled && rough && clear)
+            problems_.warn(m.loc, fmt::format("material '{}': thin walls are rendered smooth, "
+                                              "specular_roughness is not used",
+                                              m.name));
     }
 
     const ColorSpaces& colors() {
@@ -110,6 +126,7 @@ private:
         for (const FlatInstance& i : instances_) world.add(instance_bounds(desc_, i));
         for (const LightDesc& l : desc_.lights) world.add(light_bounds(l));
         if (world.empty()) {
+            problems_.warn({}, "the scene has no shapes: the picture is its background");
             if (desc_.environment || !desc_.lights.empty())
                 world.add({{-1, -1, -1}, {1, 1, 1}});
             else

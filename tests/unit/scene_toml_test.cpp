@@ -148,11 +148,11 @@ TEST_CASE("scene toml: groups nest, and one may name what stands below it") {
 TEST_CASE("scene toml: names that are wrong, twice there or in a circle are located errors") {
     const SceneFolder folder;
     CHECK(folder.failure("[[sphere]]\nname = 'ball'\n[[instance]]\nof = 'bal'") ==
-          "s.toml:5:1: instance 1: there is no shape 'bal' (did you mean 'ball'?)");
+          "s.toml:5:1: instance[0]: there is no shape 'bal' (did you mean 'ball'?)");
     CHECK(folder.failure("[[sphere]]\nname = 'ball'\n[[disc]]\nname = 'ball'") ==
           "s.toml:4:1: the name 'ball' is taken (at s.toml:2:1)");
     CHECK(folder.failure("[[sphere]]\nmaterial = 'oka'\n[material.oak]") ==
-          "s.toml:3:1: sphere 1: there is no material 'oka' (did you mean 'oak'?)");
+          "s.toml:3:1: sphere[0]: there is no material 'oka' (did you mean 'oak'?)");
     CHECK(folder.failure("[[group]]\nname = 'a'\nmembers = [{ of = 'b' }]\n[[group]]\nname = "
                          "'b'\nmembers = [{ of = 'a' }]") ==
           "s.toml:2:1: group 'a' contains itself (a > b > a)");
@@ -174,9 +174,9 @@ TEST_CASE("scene toml: nested groups that would place billions are refused at on
 TEST_CASE("scene toml: flat transforms and two ways at once are refused") {
     const SceneFolder folder;
     CHECK(folder.failure("[[sphere]]\nscale = [1, 0, 1]") ==
-          "s.toml:3:1: sphere 1: the transform is flat (scale leaves no volume)");
+          "s.toml:3:1: sphere[0]: the transform is flat (scale leaves no volume)");
     CHECK(folder.failure("[[sphere]]\nmatrix = [[1,0,0,0],[0,1,0,0],[0,0,1,0]]\nscale = 2") ==
-          "s.toml:4:1: sphere 1: give matrix or scale, not both");
+          "s.toml:4:1: sphere[0]: give matrix or scale, not both");
 }
 
 TEST_CASE("scene toml: a transforms file gives one placement a row, and is checked") {
@@ -194,7 +194,7 @@ TEST_CASE("scene toml: a transforms file gives one placement a row, and is check
     CHECK(scene.instances[0].transforms[1][0] == 2);
     CHECK(contains(scene.files, "t.f32"));
 
-    const std::string at = "s.toml:6:1: instance 1: transforms file 't.f32' ";
+    const std::string at = "s.toml:6:1: instance[0]: transforms file 't.f32' ";
     file_of({1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1});
     CHECK(folder.failure(text) == at + "has 44 bytes, must be a multiple of 48 (3x4 floats each)");
     file_of({1, 0, 0, NAN, 0, 1, 0, 6, 0, 0, 1, 0});
@@ -389,13 +389,13 @@ TEST_CASE("scene toml: every type of light is read") {
 TEST_CASE("scene toml: lights without a direction, area or type are refused") {
     const SceneFolder folder;
     CHECK(folder.failure("[[light]]\ntype = 'distant'\ndirection = [0, 0, 0]") ==
-          "s.toml:4:1: light 1: direction has no direction");
+          "s.toml:4:1: light[0]: direction has no direction");
     CHECK(folder.failure("[[light]]\ntype = 'quad'\nedges = [[1, 2, 3], [2, 4, 6]]") ==
-          "s.toml:4:1: light 1: edges span no area");
+          "s.toml:4:1: light[0]: edges span no area");
     CHECK(folder.failure("[[light]]\nname = 'k'") ==
           "s.toml:2:1: light 'k': key 'type' is missing");
     CHECK(folder.failure("[[light]]\ntype = 'quad'\ncone_deg = 3") ==
-          "s.toml:4:1: light 1: unknown key 'cone_deg'");
+          "s.toml:4:1: light[0]: unknown key 'cone_deg'");
 }
 
 TEST_CASE("scene toml: a scene in the dark is a warning, emission or a light is none") {
