@@ -32,7 +32,7 @@ std::string to_string(const SourceLoc& loc);
 /// One or more located problems (at most Problems::kMax). what() is the lines joined by '\n'.
 class Error : public std::runtime_error {
 public:
-    Error(ExitCode code, std::string message);
+    Error(ExitCode code, const std::string& message);
     Error(ExitCode code, const SourceLoc& loc, const std::string& message);
     ExitCode code() const noexcept { return code_; }
 

@@ -20,8 +20,8 @@ namespace {
 void check_cpu() {
 #ifdef TESSERA_MARCH
     __builtin_cpu_init();
-    constexpr std::string_view march = TESSERA_MARCH;
-    if ((march == "x86-64-v3" || march == "x86-64-v4") &&
+    constexpr std::string_view kMarch = TESSERA_MARCH;
+    if ((kMarch == "x86-64-v3" || kMarch == "x86-64-v4") &&
         !(__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2"))) {
         std::fputs("tessera: this build needs a CPU with AVX2 (" TESSERA_MARCH
                    "); configure with -DTESSERA_MARCH=x86-64 for older ones\n",

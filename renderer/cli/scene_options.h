@@ -7,7 +7,7 @@
 
 #include "renderer/api/render.h"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): the library's own name
 class App;
 }
 

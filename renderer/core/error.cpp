@@ -24,8 +24,8 @@ std::string to_string(const SourceLoc& loc) {
     return text;
 }
 
-Error::Error(ExitCode code, std::string message)
-    : std::runtime_error(std::move(message)), code_(code) {}
+Error::Error(ExitCode code, const std::string& message)
+    : std::runtime_error(message), code_(code) {}
 
 Error::Error(ExitCode code, const SourceLoc& loc, const std::string& message)
     : std::runtime_error(located(loc, message)), code_(code) {}

@@ -80,14 +80,14 @@ class Lanes {
 public:
     static_assert(std::is_trivially_destructible_v<T>);
     Lanes() {}
-    T& operator[](int lane) { return at_[lane]; }
-    const T& operator[](int lane) const { return at_[lane]; }
+    T& operator[](int lane) { return values[lane]; }
+    const T& operator[](int lane) const { return values[lane]; }
     using Array = T[kLanes];
-    Array& array() { return at_; }
+    Array& array() { return values; }
 
 private:
     union {
-        T at_[kLanes];
+        T values[kLanes];
     };
 };
 

@@ -70,7 +70,7 @@ struct ColorSpaces::Impl {
     }
 };
 
-ColorSpaces::ColorSpaces(std::string working_space) : impl_(std::make_unique<Impl>()) {
+ColorSpaces::ColorSpaces(const std::string& working_space) : impl_(std::make_unique<Impl>()) {
     impl_->working = own_name(working_space);
     const auto xy = chromaticities_of(impl_->working);
     if (!xy)

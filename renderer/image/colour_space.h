@@ -14,7 +14,7 @@ public:
     /// working_space: "lin_rec709" or "acescg" (aliases of a user's config are tried: role
     /// scene_linear, common names). Throws Error(ExitCode::scene) when the config cannot be read or
     /// lacks the space.
-    explicit ColorSpaces(std::string working_space);
+    explicit ColorSpaces(const std::string& working_space);
     ~ColorSpaces();
     ColorSpaces(const ColorSpaces&) = delete;
     ColorSpaces& operator=(const ColorSpaces&) = delete;

@@ -20,7 +20,7 @@ public:
     explicit Slots(std::size_t names) : slot_(names + 1, kNoIndex) {}
 
     std::uint32_t of(std::int32_t key) {
-        std::uint32_t& slot = slot_[static_cast<std::size_t>(key + 1)];
+        std::uint32_t& slot = slot_[static_cast<std::size_t>(key) + 1];
         if (slot == kNoIndex) {
             slot = static_cast<std::uint32_t>(keys_.size());
             keys_.push_back(key);

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "renderer/io/scene_shapes.h"
 
 namespace tessera {
@@ -116,11 +118,12 @@ void read_groups(const Value& document, SceneReader& reader, ShapeNames& names) 
     for (std::size_t g = 0; g < all.size(); ++g) {
         if (!members[g]) continue;
         for (const Value& table : *members[g]->list()) {
-            const std::string name =
-                all[g].name.empty() ? "[" + std::to_string(g) + "]" : " '" + all[g].name + "'";
-            const std::string number = std::to_string(all[g].members.size());
+            const std::string subject = all[g].name.empty()
+                                            ? fmt::format("group[{}]", g)
+                                            : fmt::format("group '{}'", all[g].name);
             all[g].members.push_back(placer.instance(
-                table, {reader.problems, "group" + name + ": members[" + number + "]"}));
+                table,
+                {reader.problems, fmt::format("{}: members[{}]", subject, all[g].members.size())}));
         }
     }
 }

@@ -271,13 +271,13 @@ private:
 }  // namespace
 
 void read_materials(const Value& document, SceneReader& reader) {
-    static const Value kNone{Table{}, {}};
+    static const Value none{Table{}, {}};
     const Value* tables = document.find("material");
     if (tables && !tables->table()) {
         report_misfit(*tables, "material", "tables named [material.NAME]", {reader.problems, ""});
         tables = nullptr;
     }
-    MaterialReader(tables ? *tables : kNone, reader).read_all();
+    MaterialReader(tables ? *tables : none, reader).read_all();
 }
 
 const KeyList& material_keys() { return material_rows().list; }

@@ -19,13 +19,13 @@ const KeySet<CommonEntry>& common_rows() {
 }
 
 const List& tables_of(const Value& document, const char* key, Problems& problems) {
-    static const List kNone;
+    static const List none;
     const Value* value = document.find(key);
-    if (!value) return kNone;
+    if (!value) return none;
     if (value->list()) return *value->list();
     const std::string wanted = "written as [[" + std::string(key) + "]]";
     report_misfit(*value, key, wanted, {problems, ""});
-    return kNone;
+    return none;
 }
 
 void add_named(const Value& table, const CommonEntry& common, const ShapeRef& ref, bool named,

@@ -212,11 +212,11 @@ struct EmitterBuilder {
             const std::int32_t m =
                 material >= 0 ? material : mesh.materials[mesh.material_slot(face)];
             if (m < 0 || !in.programs[m].facts().emissive) continue;
-            const auto [found, fresh] = bright.try_emplace(m, 0.0);
-            if (fresh) found->second = brightness(m);
-            if (!(found->second > 0)) continue;
+            const auto known = bright.find(m);
+            const double b = known != bright.end() ? known->second : (bright[m] = brightness(m));
+            if (!(b > 0)) continue;
             add_face(mesh, face, to_world, m, *out, [&](double area) {
-                weights.push_back(area * found->second);
+                weights.push_back(area * b);
                 sum += weights.back();
             });
         }
