@@ -33,7 +33,7 @@ build_seconds=$(seconds_since "$start")
 suppressions=$root/tests/support
 export ASAN_OPTIONS="${ASAN_OPTIONS:-detect_stack_use_after_return=1:allocator_may_return_null=1}"
 export LSAN_OPTIONS="${LSAN_OPTIONS:-suppressions='$suppressions/lsan.supp':print_suppressions=0}"
-export TSAN_OPTIONS="${TSAN_OPTIONS:-suppressions='$suppressions/tsan.supp':print_suppressions=0}"
+export TSAN_OPTIONS="${TSAN_OPTIONS:-suppressions='$suppressions/tsan.supp':ignore_noninstrumented_modules=1:print_suppressions=0}"
 export UBSAN_OPTIONS="${UBSAN_OPTIONS:-print_stacktrace=1}"
 
 # ThreadSanitizer of GCC 12 cannot map its shadow where newer kernels randomise addresses more widely.
