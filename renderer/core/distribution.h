@@ -29,6 +29,9 @@ public:
     explicit AliasTable(std::span<const double> weights);
 
     Pick sample(float u) const noexcept;
+    /// The same for tables of any size: `more` stands below the 24 bits of u, which alone are too
+    /// few where cells count by the hundred thousand.
+    Pick sample(float u, std::uint32_t more) const noexcept;
     float probability(std::size_t index) const noexcept { return cells_[index].probability; }
     std::size_t size() const noexcept { return cells_.size(); }
     std::size_t bytes() const noexcept { return cells_.size() * sizeof(Cell); }
@@ -39,6 +42,8 @@ private:
         std::uint32_t alias = 0;
         float probability = 0;
     };
+    Pick pick(std::uint32_t cell, float within) const noexcept;
+
     std::vector<Cell> cells_;
     float count_ = 0;  // of cells, as sample() wants it
 };
@@ -80,7 +85,18 @@ private:
 inline AliasTable::Pick AliasTable::sample(float u) const noexcept {
     const float scaled = u * count_;
     const auto i = static_cast<std::uint32_t>(static_cast<int>(std::min(scaled, count_ - 1.0f)));
-    const float within = std::min(scaled - static_cast<float>(static_cast<int>(i)), 0x1.fffffep-1f);
+    return pick(i, std::min(scaled - static_cast<float>(static_cast<int>(i)), 0x1.fffffep-1f));
+}
+
+inline AliasTable::Pick AliasTable::sample(float u, std::uint32_t more) const noexcept {
+    const double fine = static_cast<double>(u) + static_cast<double>(more) * 0x1p-56;
+    const double scaled = fine * static_cast<double>(cells_.size());
+    const auto i = static_cast<std::uint32_t>(
+        std::min(static_cast<std::int64_t>(scaled), static_cast<std::int64_t>(cells_.size()) - 1));
+    return pick(i, std::min(static_cast<float>(scaled - static_cast<double>(i)), 0x1.fffffep-1f));
+}
+
+inline AliasTable::Pick AliasTable::pick(std::uint32_t i, float within) const noexcept {
     const Cell& cell = cells_[i];
     const bool own = within < cell.keep;
     const std::uint32_t index = own ? i : cell.alias;

@@ -1,5 +1,6 @@
 #include "renderer/lights/light.h"
 
+#include <bit>
 #include <cmath>
 
 #include "renderer/core/robust.h"
@@ -126,7 +127,8 @@ bool sample(const SphereLight& l, const LightReference& ref, Vec2f u, LightSampl
 }
 
 bool sample(const MeshLight& l, const LightReference& ref, Vec2f u, LightSample& s) {
-    const AliasTable::Pick pick = l.faces->pick.sample(u.x);
+    const AliasTable::Pick pick =
+        l.faces->pick.sample(u.x, hash_u32(std::bit_cast<std::uint32_t>(u.y)));
     const EmissiveFaces::Triangle& t = l.faces->triangles[pick.index];
     const Vec2f b = warp_triangle({pick.remainder, u.y});
     s.material = t.material;

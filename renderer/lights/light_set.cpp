@@ -72,11 +72,15 @@ LightSet::LightSet(std::vector<Light> lights, const std::vector<double>& powers)
 LaneMask LightSet::sample(LaneMask lanes, const LightReference (&refs)[kLanes],
                           const float (&u_choice)[kLanes], const SamplePairs& u,
                           LightSamples& out) const noexcept {
+    constexpr std::size_t kMany = 4096;  // from here on 24 bits show
+    const bool many = lights_.size() > kMany;
     AliasTable::Pick picks[kLanes];
     LaneMask of_kind[std::variant_size_v<Light>] = {};
     for (LaneMask m = lanes; m != 0; m &= m - 1) {
         const int i = std::countr_zero(m);
-        picks[i] = choice_.sample(u_choice[i]);
+        picks[i] = many
+                       ? choice_.sample(u_choice[i], hash_u32(std::bit_cast<std::uint32_t>(u.x[i])))
+                       : choice_.sample(u_choice[i]);
         const LaneMask chosen = static_cast<LaneMask>(picks[i].probability > 0.0f);
         of_kind[kinds_[picks[i].index]] |= chosen << i;
         __builtin_prefetch(&lights_[picks[i].index]);  // there may be a million

@@ -27,3 +27,36 @@ TEST_CASE("distribution 2d: the search finds the cell that the cumulative says")
         CHECK(std::fabs(s.pdf - table.pdf(s.uv)) <= 1e-3f * s.pdf);
     }
 }
+
+TEST_CASE(
+    "alias table: a million cells are hit as often as they weigh, and the remainder is even") {
+    // With 24 bits alone each cell would see 16 numbers, and the remainder a few of them.
+    constexpr std::size_t kCells = 1000000;
+    constexpr int kTries = 4000000;
+    std::vector<double> weights(kCells);
+    for (std::size_t i = 0; i < kCells; ++i) weights[i] = 1.0 + 0.37 * static_cast<double>(i % 7);
+    const AliasTable table(weights);
+    double total = 0;
+    for (double w : weights) total += w;
+    std::mt19937 rng(3);
+    const auto unit = [&] { return static_cast<float>(rng() >> 8) * 0x1p-24f; };
+    double hits[7] = {}, remainders[64] = {};
+    for (int i = 0; i < kTries; ++i) {
+        const AliasTable::Pick pick = table.sample(unit(), static_cast<std::uint32_t>(rng()));
+        ++hits[pick.index % 7];
+        ++remainders[static_cast<int>(pick.remainder * 64)];
+    }
+    double chi = 0;
+    for (int k = 0; k < 7; ++k) {
+        double expected = 0;
+        for (std::size_t i = static_cast<std::size_t>(k); i < kCells; i += 7)
+            expected += weights[i];
+        expected *= kTries / total;
+        chi += (hits[k] - expected) * (hits[k] - expected) / expected;
+    }
+    CHECK(chi < 22.5);  // 6 degrees of freedom, p = 0.001
+    double chi_remainder = 0;
+    for (double h : remainders)
+        chi_remainder += (h - kTries / 64.0) * (h - kTries / 64.0) / (kTries / 64.0);
+    CHECK(chi_remainder < 103.4);  // 63 degrees of freedom, p = 0.001
+}
