@@ -68,7 +68,6 @@ private:
     };
 
     // ---- camera
-    // -------------------------------------------------------------------------------------
     void start_paths() noexcept {
         SamplePairs film, lens;
         film_points(job_, film);
@@ -92,9 +91,8 @@ private:
     }
 
     // ---- intersect
-    // ---------------------------------------------------------------------------------- Packets
-    // where lanes run together (the camera's rays), single rays after that: by depth, never by how
-    // many lanes live, so that a lane's bits do not depend on its neighbours.
+    // Packets where lanes run together (the camera's rays), single rays after that: by depth, never
+    // by how many lanes live, so that a lane's bits do not depend on its neighbours.
     void intersect(std::uint32_t depth) noexcept {
         const auto count = static_cast<std::uint64_t>(std::popcount(alive_));
         (depth == 0 ? counters_.rays.camera : counters_.rays.bounce) += count;
@@ -131,7 +129,6 @@ private:
     }
 
     // ---- escape: what the rays that hit nothing see
-    // --------------------------------------------------
     void escape(std::uint32_t depth) noexcept {
         if (escaped_ == 0) return;
         Vec3f d[kLanes];
@@ -171,7 +168,6 @@ private:
     }
 
     // ---- arrive: the surface, and the light it sends of itself
-    // ----------------------------------------
     void arrive(int i, std::uint32_t depth) noexcept {
         const Vec3f d = ray_[i].d;
         make(surface_[i], [&] {
@@ -202,7 +198,6 @@ private:
     }
 
     // ---- the frames that face the viewers, and what the surfaces do there
-    // ----------------------------------------
     void face_viewer() noexcept {
         Vec3Lanes wo, ns;
         each(alive_, [&](int i) {
@@ -242,7 +237,6 @@ private:
     }
 
     // ---- next-event estimation
-    // ----------------------------------------------------------------------
     void sample_lights() noexcept {
         shadow_lanes_ = 0;
         if (!scene_.lights().sampled()) return;
@@ -294,7 +288,6 @@ private:
     }
 
     // ---- occlude: the blocked contributions are dropped, the others added
-    // -----------------------------
     void occlude(std::uint32_t depth) noexcept {
         if (shadow_lanes_ == 0) return;
         counters_.rays.shadow += static_cast<std::uint64_t>(std::popcount(shadow_lanes_));
@@ -319,7 +312,6 @@ private:
     }
 
     // ---- scatter: the paths go on, or stop
-    // -------------------------------------------------------------------------------------
     void scatter(std::uint32_t depth) noexcept {
         each(alive_, [&](int i) {
             if (!lobes_[i].sample(frame_.wo[i], bsdf_u_.at(i), choice_u_.y[i], scattered_[i]))
@@ -380,7 +372,6 @@ private:
     }
 
     // ---- passes
-    // -------------------------------------------------------------------------------------
     void note_first_hit(int i, const SurfacePoint& s) noexcept {
         out_[i].alpha = 1.0f;
         if (!job_.layers) return;

@@ -205,9 +205,7 @@ private:
             placed.instance_at(to_scene * translation(Vec3d(desc.center)));
         }
         s.cutout = quadric_cutout(i, s.material, desc.loc);
-        placed.kind = PlacedKind::sphere;
-        placed.shape = static_cast<std::uint32_t>(scene_->geometry_.spheres.size());
-        scene_->geometry_.spheres.push_back(s);
+        add_shape(PlacedKind::sphere, s, scene_->geometry_.spheres, placed);
     }
 
     void place_disc(const FlatInstance& i, const Affined& to_scene, Placement& placed) {
@@ -224,9 +222,15 @@ private:
             placed.instance_at(to_scene * translation(Vec3d(desc.center)));
         }
         d.cutout = quadric_cutout(i, d.material, desc.loc);
-        placed.kind = PlacedKind::disc;
-        placed.shape = static_cast<std::uint32_t>(scene_->geometry_.discs.size());
-        scene_->geometry_.discs.push_back(d);
+        add_shape(PlacedKind::disc, d, scene_->geometry_.discs, placed);
+    }
+
+    template <class Shape>
+    static void add_shape(PlacedKind kind, const Shape& shape, std::vector<Shape>& shapes,
+                          Placement& placed) {
+        placed.kind = kind;
+        placed.shape = static_cast<std::uint32_t>(shapes.size());
+        shapes.push_back(shape);
     }
 
     // Whether a sphere or disc can be moved into place by centre and radius alone. Texture
