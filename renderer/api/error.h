@@ -40,16 +40,24 @@ private:
     ExitCode code_;
 };
 
+/// How much is put up with in what is read.
+enum class Strictness {
+    lenient,  // what is broken is left out with a warning
+    normal,   // what is broken is an error; what is missing or unclear is a warning
+    strict,   // warnings are errors
+};
+
 /// Collects located problems so that a user sees many at once rather than the first.
 class Problems {
 public:
     static constexpr int kMax = 20;
 
-    /// strict: warnings count as errors.
-    explicit Problems(bool strict = false) : strict_(strict) {}
+    explicit Problems(Strictness strictness = Strictness::normal) : strictness_(strictness) {}
 
     /// Records an error; throws Error as soon as kMax are there.
     void error(const SourceLoc& loc, const std::string& message);
+    /// Input that is broken: an error, or a warning when lenient.
+    void damage(const SourceLoc& loc, const std::string& message);
     /// Records a warning. The same text is kept once.
     void warn(const SourceLoc& loc, const std::string& message);
     /// A remark about what was done in the user's place (never an error). The same text is kept
@@ -58,12 +66,14 @@ public:
     /// Throws Error(code) with every error collected so far, if there is one.
     void throw_if_any(ExitCode code = ExitCode::scene) const;
 
+    bool lenient() const noexcept { return strictness_ == Strictness::lenient; }
     const std::vector<std::string>& errors() const noexcept { return errors_; }
     const std::vector<std::string>& warnings() const noexcept { return warnings_; }
     const std::vector<std::string>& notes() const noexcept { return notes_; }
 
 private:
-    bool strict_ = false;
+    Strictness strictness_;
+    bool damaged_ = false;
     std::vector<std::string> errors_;
     std::vector<std::string> warnings_;
     std::vector<std::string> notes_;

@@ -72,7 +72,7 @@ struct BuildOptions {
     int threads = 0;     // as RenderSettings
     std::string kernel;  // "" = the smallest that covers the scene; "basic", "surface", "full"
     std::string isa;     // Embree's instruction set, "" = the best of this machine
-    bool strict = false;
+    Strictness strictness = Strictness::normal;
 };
 
 /// Throws Error(scene) for what cannot be rendered, Error(memory) when memory runs out.

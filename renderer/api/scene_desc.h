@@ -288,7 +288,7 @@ struct SceneDesc {
 };
 
 struct LoadOptions {
-    bool strict = false;                 // warnings become errors
+    Strictness strictness = Strictness::normal;
     bool allow_external_assets = false;  // assets outside the scene's folders
     std::vector<std::string> set;  // "camera.fov_deg=35", applied in order over the scene file
 };

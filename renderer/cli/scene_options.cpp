@@ -79,7 +79,10 @@ void SceneOptions::add_to(CLI::App& app) {
         ->check(CLI::IsMember({"basic", "surface", "full"}));
     app.add_option("--isa", isa, "Embree's instruction set (default: the best of this machine)")
         ->check(CLI::IsMember({"sse2", "sse4.2", "avx", "avx2", "avx512"}));
-    app.add_flag("--strict", strict, "Warnings are errors");
+    CLI::Option* const no_warnings = app.add_flag("--strict", strict, "Warnings are errors");
+    app.add_flag("--lenient", lenient,
+                 "Broken faces, numbers and images are left out with a warning instead of refused")
+        ->excludes(no_warnings);
     app.add_flag("--allow-external-assets", external, "Assets may lie outside the scene's folders");
     for (CLI::Option* o : app.get_options())
         o->multi_option_policy(o->get_expected_max() > 1 ? CLI::MultiOptionPolicy::TakeAll
@@ -97,7 +100,7 @@ SceneDesc SceneOptions::load(double& load_s) const {
     const std::vector<int> size = res.empty() ? std::vector<int>{} : parse_resolution(res);
     const PixelWindow window = crop.empty() ? PixelWindow{} : parse_crop(crop);
     LoadOptions options;
-    options.strict = strict;
+    options.strictness = strictness();
     options.allow_external_assets = external;
     options.set = set;
     SceneDesc desc = load_scene(scene, options);
@@ -114,6 +117,11 @@ SceneDesc SceneOptions::load(double& load_s) const {
     return desc;
 }
 
-BuildOptions SceneOptions::build_options() const { return {threads, kernel, isa, strict}; }
+BuildOptions SceneOptions::build_options() const { return {threads, kernel, isa, strictness()}; }
+
+Strictness SceneOptions::strictness() const noexcept {
+    if (lenient) return Strictness::lenient;
+    return strict ? Strictness::strict : Strictness::normal;
+}
 
 }  // namespace tessera

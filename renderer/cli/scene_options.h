@@ -22,12 +22,15 @@ struct SceneOptions {
     std::optional<std::uint64_t> seed;
     int threads = 0;
     int tile = 32;
-    bool strict = false, external = false;
+    bool strict = false, lenient = false, external = false;
 
     void add_to(CLI::App& app);
     /// Reads the scene and lays the options over it. Returns seconds in load_s.
     SceneDesc load(double& load_s) const;
     BuildOptions build_options() const;
+
+private:
+    Strictness strictness() const noexcept;
 };
 
 }  // namespace tessera

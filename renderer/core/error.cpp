@@ -35,8 +35,14 @@ void Problems::error(const SourceLoc& loc, const std::string& message) {
     if (errors_.size() >= kMax) throw_if_any();
 }
 
+void Problems::damage(const SourceLoc& loc, const std::string& message) {
+    if (lenient()) return warn(loc, message);
+    damaged_ = true;
+    error(loc, message);
+}
+
 void Problems::warn(const SourceLoc& loc, const std::string& message) {
-    if (strict_) return error(loc, message);
+    if (strictness_ == Strictness::strict) return error(loc, message);
     add_once(warnings_, located(loc, message));
 }
 
@@ -48,6 +54,7 @@ void Problems::throw_if_any(ExitCode code) const {
     if (errors_.empty()) return;
     std::string text;
     for (const std::string& line : errors_) text += (text.empty() ? "" : "\n") + line;
+    if (damaged_) text += "\n(--lenient leaves out what is broken and renders the rest)";
     throw Error(code, text);
 }
 

@@ -4,8 +4,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <filesystem>
 #include <string_view>
 #include <system_error>
 
@@ -77,6 +79,22 @@ ImageFormat sniff_image(const std::string& path) {
     for (const Magic& magic : kMagics)
         if (head.starts_with(magic.bytes)) return magic.format;
     fail_image(path, "not one of PNG, JPEG, TIFF, OpenEXR, Radiance HDR");
+}
+
+bool claims_to_be_image(const std::string& path) noexcept {
+    constexpr std::array kExtensions{".png"sv,  ".jpg"sv, ".jpeg"sv, ".tif"sv,
+                                     ".tiff"sv, ".exr"sv, ".hdr"sv};
+    try {
+        if (!std::filesystem::is_regular_file(path)) return false;
+        std::string extension = std::filesystem::path(path).extension().string();
+        for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+        if (std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end())
+            return true;
+        sniff_image(path);
+        return true;
+    } catch (const std::exception&) {
+        return false;
+    }
 }
 
 }  // namespace tessera

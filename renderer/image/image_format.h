@@ -18,4 +18,8 @@ const char* name_of(ImageFormat format) noexcept;
 /// blocks (a FIFO or a device is refused).
 ImageFormat sniff_image(const std::string& path);
 
+/// Whether a file that could not be read claims, by its name or its first bytes, to be one of the
+/// formats: it is broken then, rather than missing or of another kind.
+bool claims_to_be_image(const std::string& path) noexcept;
+
 }  // namespace tessera

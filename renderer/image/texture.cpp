@@ -14,6 +14,7 @@
 #include "renderer/core/parallel.h"
 #include "renderer/image/colour_names.h"
 #include "renderer/image/colour_space.h"
+#include "renderer/image/image_format.h"
 #include "renderer/image/pixel_reader.h"
 #include "renderer/image/pyramid.h"
 #include "renderer/image/tile_cache.h"
@@ -58,6 +59,8 @@ void grade(Texel& t, const Use& use) noexcept {
     for (std::size_t c = 0; c < 3; ++c) t[c] = std::clamp(t[c] * use.gain + use.bias, -kMax, kMax);
 }
 
+constexpr const char* kMagentaInstead = "; magenta in its place";
+
 /// A file in one colour space, read once however many textures use it.
 struct Source {
     std::string file;
@@ -70,7 +73,7 @@ struct Source {
     bool to_cache = false;
     bool srgb = false;
     int channels = 3;
-    std::vector<std::string> warnings, notes;
+    std::vector<std::string> damages, warnings, notes;
     std::string error;  // the colour space is unknown: the user's mistake, not the file's
     std::exception_ptr fatal;
 };
@@ -134,22 +137,24 @@ void load(Source& s, const ColorSpaces& colors, const ByteTables& tables) {
                              " values are beyond 65504; clamped to that");
 }
 
-void become_magenta(Source& s, const ByteTables& tables) {
+void become_magenta(Source& s, const ByteTables& tables, const Error& why) {
+    if (claims_to_be_image(s.file))
+        s.damages.emplace_back(why.what());
+    else
+        s.warnings.push_back(std::string(why.what()) + kMagentaInstead);
     s.pyramid = constant_pyramid({255, 0, 255}, tables);
     s.to_cache = s.alpha = false;
     s.width = s.height = 1;
 }
 
-/// load() with every failure of the file turned into a warning and magenta.
+/// load() with every failure of the file told and turned into magenta.
 void load_or_magenta(Source& s, const ColorSpaces& colors, const ByteTables& tables) noexcept {
     try {
         try {
             load(s, colors, tables);
         } catch (const Error& error) {
             if (error.code() == ExitCode::memory) throw;
-            if (s.error.empty())
-                s.warnings.push_back(std::string(error.what()) + "; magenta in its place");
-            become_magenta(s, tables);
+            if (s.error.empty()) become_magenta(s, tables, error);
         } catch (const std::bad_alloc&) {
             throw Error(ExitCode::memory, named(s) + "out of memory");
         }
@@ -207,11 +212,12 @@ void TextureStore::Impl::report(Problems& problems) {
                 if (!cache) cache = std::make_unique<TileCache>();
                 s.tile = cache->add(s.file, s.channels, s.srgb);
             } catch (const Error& error) {
-                s.warnings.push_back(std::string(error.what()) + "; magenta in its place");
-                become_magenta(s, tables);
+                become_magenta(s, tables, error);
             }
         }
         if (!s.error.empty()) problems.error(s.loc, s.error);
+        for (const std::string& line : s.damages)
+            problems.damage(s.loc, line + (problems.lenient() ? kMagentaInstead : ""));
         for (const std::string& line : s.warnings) problems.warn(s.loc, line);
         for (const std::string& line : s.notes) problems.note(s.loc, line);
     }

@@ -78,7 +78,7 @@ SceneDesc load_scene(const std::string& path, const LoadOptions& options) {
         (fs::path(path).has_parent_path() ? fs::path(path).parent_path() : ".").string();
     AssetRules assets(folder, options.allow_external_assets);
     assets.add_root(real_folder(path));
-    Problems problems(options.strict);
+    Problems problems(options.strictness);
 
     std::vector<std::string> files;
     Value document = bare_obj ? document_of_obj(path) : read_document(path, assets, files);

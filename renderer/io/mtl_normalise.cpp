@@ -127,6 +127,7 @@ private:
     std::string_view option(const Option& option, std::string_view rest, std::string& out);
     void begin(std::string_view key);
     void complain(const char* what, std::string_view key);
+    void damage(const char* what, std::string_view key);
 
     Tally* tally_;
     std::set<std::string, std::less<>>* seen_;
@@ -142,6 +143,10 @@ void BlockWriter::begin(std::string_view key) {
 
 void BlockWriter::complain(const char* what, std::string_view key) {
     tally_->add(what, line_, "'" + std::string(key.substr(0, 40)) + "'");
+}
+
+void BlockWriter::damage(const char* what, std::string_view key) {
+    tally_->damage(what, line_, "'" + std::string(key.substr(0, 40)) + "'");
 }
 
 void BlockWriter::statement(std::string_view line, std::uint32_t number_of_line) {
@@ -185,13 +190,13 @@ void BlockWriter::color(std::string_view key, std::string_view rest) {
     std::size_t count = 0;
     while (count < c.size() && !word.empty()) {
         const auto value = finite_number(word);
-        if (!value) return complain("not a finite number, statement ignored:", key);
+        if (!value) return damage("broken material statement: not a finite number in", key);
         c[count++] = *value;
         const WordSplit next = split_word(more);
         word = next.word;
         more = next.rest;
     }
-    if (count == 0) return complain("a value is missing, statement ignored:", key);
+    if (count == 0) return damage("broken material statement: a value is missing after", key);
     // One value is grey; so are the channels that two leave out.
     for (std::size_t i = count; i < c.size(); ++i) c[i] = c[0];
     if (xyz) {  // CIE XYZ to linear Rec.709, white D65 (IEC 61966-2-1)
@@ -207,9 +212,9 @@ void BlockWriter::color(std::string_view key, std::string_view rest) {
 void BlockWriter::number(std::string_view key, std::string_view rest) {
     auto [word, more] = split_word(rest.substr(0, rest.find('#')));
     if (word == "-halo") word = split_word(more).word;
-    if (word.empty()) return complain("a value is missing, statement ignored:", key);
+    if (word.empty()) return damage("broken material statement: a value is missing after", key);
     const auto value = finite_number(word);
-    if (!value) return complain("not a finite number, statement ignored:", key);
+    if (!value) return damage("broken material statement: not a finite number in", key);
     begin(key);
     if (key == "illum") {
         block_.text += ' ' + std::to_string(static_cast<int>(std::clamp(*value, -1.0, 99.0)));

@@ -99,7 +99,7 @@ int load_obj(const std::string& path, const AssetRules& assets, SceneDesc& scene
     auto [numbers, statements] = read_obj(path, tally, options);
     scene.files.push_back(path);
 
-    check_faces(numbers, statements.face_lines, tally);
+    check_faces(numbers, statements, tally);
     statements.face_lines = {};
     resolve_normals(numbers, statements);
     const std::vector<ObjLibrary> libraries = std::move(statements.libraries);

@@ -1,6 +1,8 @@
 #include "renderer/io/obj_checks.h"
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace tessera {
 namespace {
@@ -19,13 +21,22 @@ std::vector<bool> usable(const std::vector<T>& values, std::size_t width, double
     return out;
 }
 
+std::string place_of(std::uint32_t vertex, const std::vector<ObjBadVertex>& bad) {
+    const auto at = std::lower_bound(
+        bad.begin(), bad.end(), vertex,
+        [](const ObjBadVertex& entry, std::uint32_t wanted) { return entry.vertex < wanted; });
+    const std::string name = "vertex " + std::to_string(vertex + 1);
+    if (at == bad.end() || at->vertex != vertex) return name;
+    return name + " in line " + std::to_string(at->line);
+}
+
 bool holds(const std::vector<bool>& flags, std::uint32_t index) {
     return index < flags.size() && flags[index];
 }
 
 }  // namespace
 
-void check_faces(ObjNumbers& numbers, const std::vector<std::uint32_t>& face_lines, Tally& tally) {
+void check_faces(ObjNumbers& numbers, const ObjStatements& statements, Tally& tally) {
     const std::vector<bool> positions = usable(numbers.positions, 3, kFarthest);
     const std::vector<bool> uvs = usable(numbers.uvs, 2, kFarthest);
     const std::vector<bool> normals = usable(numbers.normals, 3, kFarthest);
@@ -33,27 +44,28 @@ void check_faces(ObjNumbers& numbers, const std::vector<std::uint32_t>& face_lin
     std::size_t written = 0;
     for (std::size_t face = 0; face < numbers.face_end.size(); ++face) {
         const std::size_t begin = written;
+        const std::uint32_t line = statements.face_lines[face];
         bool past_end = false;
-        bool not_finite = false;
+        std::uint32_t unusable = kNoIndex;
         bool attribute_past_end = false;
         for (const std::size_t end = numbers.face_end[face]; read < end; ++read) {
             ObjCorner corner = numbers.corners[read];
             past_end |= corner.position >= positions.size();
-            not_finite |= !holds(positions, corner.position);
+            if (!holds(positions, corner.position)) unusable = corner.position;
             attribute_past_end |= corner.uv != kNoIndex && corner.uv >= uvs.size();
             attribute_past_end |= corner.normal != kNoIndex && corner.normal >= normals.size();
             if (!holds(uvs, corner.uv)) corner.uv = kNoIndex;
             if (!holds(normals, corner.normal)) corner.normal = kNoIndex;
             numbers.corners[written++] = corner;
         }
-        if (past_end || not_finite) {
-            tally.add(past_end ? "face dropped: it uses a vertex that is not in the file"
-                               : "face dropped: it uses a vertex that is not finite or beyond 1e15",
-                      face_lines[face]);
-            written = begin;
-        } else if (attribute_past_end) {
-            tally.add("face names a vt or vn that is not there; it is ignored", face_lines[face]);
-        }
+        if (past_end)
+            tally.damage("broken face: it uses a vertex that is not in the file", line);
+        else if (unusable != kNoIndex)
+            tally.damage("broken face: its vertex is not three finite numbers below 1e15:", line,
+                         place_of(unusable, statements.bad_vertices));
+        else if (attribute_past_end)
+            tally.add("face names a vt or vn that is not there; it is ignored", line);
+        if (unusable != kNoIndex) written = begin;
         numbers.face_end[face] = written;
     }
     numbers.corners.resize(written);

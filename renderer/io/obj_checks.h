@@ -14,7 +14,7 @@ namespace tessera {
 /// finite or beyond 1e15, loses all its corners (and keeps its number); a uv or normal index past
 /// the end, or one of a value that is not finite, becomes kNoIndex. What is dropped is told to the
 /// tally with its line.
-void check_faces(ObjNumbers& numbers, const std::vector<std::uint32_t>& face_lines, Tally& tally);
+void check_faces(ObjNumbers& numbers, const ObjStatements& statements, Tally& tally);
 
 /// The statements in force at a face.
 struct ObjState {

@@ -98,8 +98,8 @@ void ObjNormaliser::vertex(std::string_view rest) {
     const bool good = count >= 3 && std::all_of(words.begin(), words.begin() + 3, is_coordinate);
     if (!good) {
         for (const std::string_view word : words) refuse_decimal_comma(word);
-        tally_->add("vertex is not three finite numbers below 1e15; faces that use it are dropped",
-                    reader_.line());
+        tally_->add("vertex is not three finite numbers below 1e15", reader_.line());
+        found_.bad_vertices.push_back({static_cast<std::uint32_t>(vertices_ - 1), reader_.line()});
         out_ += "v 1e999 0 0\n";
         return;
     }
@@ -113,7 +113,7 @@ void ObjNormaliser::vertex(std::string_view rest) {
 void ObjNormaliser::color(const std::string_view* words) {
     std::vector<float>& colors = found_.colors;
     if (!std::all_of(words, words + 3, is_coordinate)) {
-        tally_->add("vertex colour is not three finite numbers; white is used", reader_.line());
+        tally_->damage("broken vertex colour: not three finite numbers", reader_.line());
         return;
     }
     colors.resize(static_cast<std::size_t>(vertices_ - 1) * 3, 1.0f);
@@ -139,9 +139,9 @@ void ObjNormaliser::attribute(std::string_view rest, const char* keyword, int wa
         out_.append(words[0].data(), last.data() + last.size());
     } else {
         for (const std::string_view word : words) refuse_decimal_comma(word);
-        tally_->add(passed == 3 ? "vn is not three finite numbers; it is computed"
-                                : "vt is not one to three finite numbers; it is ignored",
-                    reader_.line());
+        tally_->damage(passed == 3 ? "broken vn: not three finite numbers"
+                                   : "broken vt: not one to three finite numbers",
+                       reader_.line());
         out_ += " 1e999 0 0";
     }
     out_ += '\n';
@@ -153,7 +153,7 @@ void ObjNormaliser::face(std::string_view rest) {
     const std::uint32_t line = reader_.line();
     const auto drop = [&](const char* why, const std::string& detail = {}) {
         out_.resize(begin);
-        tally_->add(why, line, detail);
+        tally_->damage(why, line, detail);
     };
     std::size_t corners = 0;
     bool attributes_bad = false;
@@ -161,12 +161,12 @@ void ObjNormaliser::face(std::string_view rest) {
     for (std::string_view word; !(word = next_number_word(rest)).empty(); ++corners) {
         const auto corner = parse_corner(word);
         if (!corner)
-            return drop("face dropped: corners must be v, v/vt, v//vn or v/vt/vn, not",
+            return drop("broken face: corners must be v, v/vt, v//vn or v/vt/vn, not",
                         quoted(word));
         if (corner->position == 0)
-            return drop("face dropped: indices count from 1, index 0 is in", quoted(word));
+            return drop("broken face: indices count from 1, index 0 is in", quoted(word));
         if (is_index_bad(corner->position, vertices_))
-            return drop("face dropped: there is no such vertex:", quoted(word));
+            return drop("broken face: there is no such vertex:", quoted(word));
         out_ += ' ';
         if (is_index_bad(corner->uv, uvs_) || is_index_bad(corner->normal, normals_)) {
             attributes_bad = true;
@@ -175,7 +175,7 @@ void ObjNormaliser::face(std::string_view rest) {
             out_ += word;
         }
     }
-    if (corners < 3) return drop("face dropped: fewer than three corners");
+    if (corners < 3) return drop("broken face: fewer than three corners");
     if (attributes_bad) tally_->add("face names a vt or vn that is not there; it is ignored", line);
     out_ += '\n';
     if (found_.face_lines.size() >= static_cast<std::size_t>(kMaxCount))

@@ -32,6 +32,11 @@ struct ObjEvent {
     ObjStatement kind = ObjStatement::object;
 };
 
+/// A vertex whose position is unusable, and the line it stands on.
+struct ObjBadVertex {
+    std::uint32_t vertex = 0, line = 0;
+};
+
 struct ObjLibrary {
     std::string text;  // all that follows 'mtllib'
     std::uint32_t line = 0;
@@ -53,8 +58,9 @@ struct ObjStatements {
     std::vector<ObjEvent> events;
     std::vector<std::string> names;
     std::vector<ObjLibrary> libraries;
-    std::vector<std::uint32_t> face_lines;  // per face passed on
-    std::vector<float> colors;              // r g b per vertex; empty: none, may end early (white)
+    std::vector<std::uint32_t> face_lines;   // per face passed on
+    std::vector<ObjBadVertex> bad_vertices;  // in their order
+    std::vector<float> colors;               // r g b per vertex; empty: none, may end early (white)
     ObjRemainder remainder;
 };
 

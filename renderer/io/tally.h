@@ -1,6 +1,6 @@
 #pragma once
-// Warnings and notes of a kind, the first few located, the rest counted: a broken file of a million
-// lines gives a short report.
+// Damage, warnings and notes of a kind, the first few located, the rest counted: a broken file of a
+// million lines gives a short report.
 
 #include <cstdint>
 #include <map>
@@ -20,6 +20,10 @@ public:
     void add(const char* kind, std::uint32_t line, const std::string& detail = {}) {
         if (++warnings_[kind] <= shown_) problems_->warn(at(line), text(kind, detail));
     }
+    /// The same for input that is broken: errors unless lenient.
+    void damage(const char* kind, std::uint32_t line, const std::string& detail = {}) {
+        if (++damages_[kind] <= shown_) problems_->damage(at(line), text(kind, detail));
+    }
     /// The same for notes.
     void note(const char* kind, std::uint32_t line, const std::string& detail = {}) {
         if (++notes_[kind] <= shown_) problems_->note(at(line), text(kind, detail));
@@ -27,14 +31,18 @@ public:
 
     /// Reports how many more there were of each kind.
     void finish() {
+        for (const auto& [kind, count] : damages_)
+            if (count > shown_) problems_->damage(at(0), more(count, kind));
         for (const auto& [kind, count] : warnings_)
             if (count > shown_) problems_->warn(at(0), more(count, kind));
         for (const auto& [kind, count] : notes_)
             if (count > shown_) problems_->note(at(0), more(count, kind));
+        damages_.clear();
         warnings_.clear();
         notes_.clear();
     }
 
+    bool lenient() const noexcept { return problems_->lenient(); }
     const std::shared_ptr<const std::string>& file() const noexcept { return file_; }
 
 private:
@@ -51,7 +59,7 @@ private:
 
     Problems* problems_;
     std::shared_ptr<const std::string> file_;
-    Counts warnings_, notes_;
+    Counts damages_, warnings_, notes_;
     std::int64_t shown_;
 };
 

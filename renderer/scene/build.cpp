@@ -25,7 +25,7 @@ public:
     SceneBuilder(SceneDesc&& desc, const BuildOptions& options)
         : desc_(std::move(desc)),
           options_(options),
-          problems_(options.strict),
+          problems_(options.strictness),
           scene_(std::make_shared<Scene>()) {}
 
     ScenePtr build() {

@@ -7,7 +7,7 @@ import unittest
 from support import SCENE, USAGE, TesseraTest
 
 RENDER_OPTIONS = (
-    "--output --spp --time --res --crop --threads --tile --seed --set --aov --stats --preview --float --strict "
+    "--output --spp --time --res --crop --threads --tile --seed --set --aov --stats --preview --float --strict --lenient "
     "--allow-external-assets --kernel --no-progress"
 ).split()
 

@@ -46,10 +46,10 @@ private:
     }
 };
 
-inline LoadedObj load_path(const std::string& path) {
+inline LoadedObj load_path(const std::string& path, Strictness strictness = Strictness::lenient) {
     LoadedObj out;
     const std::string folder = std::filesystem::path(path).parent_path().string();
-    Problems problems;
+    Problems problems(strictness);
     try {
         const int mesh = load_obj(path, AssetRules(folder, false), out.scene, problems);
         out.mesh = out.scene.meshes.at(static_cast<std::size_t>(mesh));
@@ -66,13 +66,22 @@ inline LoadedObj load_file(const ObjFiles& files, const std::string& name) {
     return load_path(files.path(name));
 }
 
-/// Loads obj as "m.obj" beside the other files.
+/// Loads obj as "m.obj" beside the other files, leaving out what is broken.
 inline LoadedObj load_text(const std::string& obj,
                            const std::map<std::string, std::string>& others = {}) {
     const ObjFiles files;
     files.write("m.obj", obj);
     for (const auto& [name, text] : others) files.write(name, text);
     return load_file(files, "m.obj");
+}
+
+/// The error for obj when nothing broken is left out; "" when it loads.
+inline std::string refusal(const std::string& obj,
+                           const std::map<std::string, std::string>& others = {}) {
+    const ObjFiles files;
+    files.write("m.obj", obj);
+    for (const auto& [name, text] : others) files.write(name, text);
+    return load_path(files.path("m.obj"), Strictness::normal).error;
 }
 
 /// Four corners of a unit square in z = 0, to put faces on.

@@ -267,7 +267,7 @@ TEST_CASE("mtl: impossible values are clamped or ignored, with the line") {
     CHECK(m.base_metalness.value == 1);
     CHECK(m.emission_luminance.value == 0);
     CHECK(m.geometry_opacity.value == 0);
-    CHECK(got.warned("m.mtl:2: not a finite number"));
+    CHECK(got.warned("m.mtl:2: broken material statement: not a finite number in"));
     CHECK(got.warned("m.mtl:3: value clamped: material 'a': Ks is 9, must be in [0, 1]"));
 }
 

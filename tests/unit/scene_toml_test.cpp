@@ -337,7 +337,7 @@ TEST_CASE("scene toml: a warning is an error when strict") {
     CHECK(contains(folder.load(text).warnings,
                    "s.toml:3:1: material 'a': base_color is 2, clamped to [0, 1]"));
     LoadOptions options;
-    options.strict = true;
+    options.strictness = Strictness::strict;
     CHECK_THROWS_AS(load_scene(folder.write("s.toml", "tessera = 1\n" + text), options), Error);
 }
 

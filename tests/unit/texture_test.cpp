@@ -278,7 +278,7 @@ TEST_CASE("texture: an unreadable file is one warning and magenta") {
     for (int t = 0; t < 3; ++t) check_texel(f.store->sample(t, 0.3f, 9, 0.5f), {1, 0, 1, 1});
     CHECK_FALSE(f.store->has_alpha(0));
     Fixture strict;
-    strict.problems = Problems(true);
+    strict.problems = Problems(Strictness::strict);
     strict.load({from_file(folder / "none.png")});
     CHECK(strict.problems.errors().size() == 1);
 }
