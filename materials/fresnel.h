@@ -12,16 +12,13 @@ namespace tessera {
 /// Born & Wolf, "Principles of Optics", section 1.5.2.
 inline float fresnel_dielectric(float cos_i, float eta, float* cos_t_out = nullptr) {
     const float sin2_t = (1.0f - cos_i * cos_i) / (eta * eta);
-    if (sin2_t >= 1.0f) {
-        if (cos_t_out) *cos_t_out = 0.0f;
-        return 1.0f;
-    }
-    const float cos_t = std::sqrt(1.0f - sin2_t);
+    const float cos_t = safe_sqrt(1.0f - sin2_t);
     if (cos_t_out) *cos_t_out = cos_t;
     // Both polarisations over one denominator.
     const float s = cos_i + eta * cos_t, p = eta * cos_i + cos_t;
     const float rs = (cos_i - eta * cos_t) * p, rp = (eta * cos_i - cos_t) * s;
-    return 0.5f * (rs * rs + rp * rp) / (s * s * p * p);
+    const float partly = 0.5f * (rs * rs + rp * rp) / (s * s * p * p);
+    return sin2_t < 1.0f ? partly : 1.0f;
 }
 
 constexpr float pow5(float x) { return x * x * x * x * x; }
@@ -38,8 +35,8 @@ inline Color fresnel_f82(Color f0, Color f82, float cos_i) {
     const Color schlick = f0 + (white - f0) * pow5(1.0f - cos_i);
     const Color at_mu = f0 + (white - f0) * kMuSchlick;
     const float c1 = 1.0f - cos_i;
-    const Color dip = at_mu * (white - f82) * (cos_i * c1 * pow5(c1) / kMuTerm);
-    return max(schlick - dip, Color(0.0f));
+    const Color f = schlick - at_mu * (white - f82) * (cos_i * c1 * pow5(c1) * (1.0f / kMuTerm));
+    return {f.x > 0.0f ? f.x : 0.0f, f.y > 0.0f ? f.y : 0.0f, f.z > 0.0f ? f.z : 0.0f};
 }
 
 /// OpenPBR's specular_weight scales the reflectance at normal incidence and, above 1, the index

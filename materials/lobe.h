@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "renderer/core/ray.h"
 #include "renderer/core/vec.h"
 
 namespace tessera {
@@ -17,29 +18,31 @@ struct LobeEval {
     float pdf = 0;
 };
 
-/// Lobes have eval(wo, wi), sample(wo, u, choice, out), albedo(wo), and, unless they are deltas,
-/// direction(): sample() without weight and pdf, for when those of several lobes together are
-/// wanted. Samples are filled in where they are kept (an optional that is copied cost more than its
-/// making); false: there is none.
-struct LobeSample {
+/// Where a lobe sends a path. wi is zero when it sends it nowhere.
+struct LobeDirection {
     Vec3f wi;
-    Color weight;   // f / pdf; for a delta lobe the whole ratio
-    float pdf = 0;  // 0 for a delta lobe
+    float eta = 1;  // index on wi's side over wo's side; 1 unless refracted
     LobeClass cls = LobeClass::diffuse;
-    bool delta = false;
-    float eta = 1;     // index on wi's side over wo's side; 1 unless refracted
-    float spread = 0;  // half angle by which a ray cone grows, radians, rough
 };
 
-/// A lobe's sample by its direction() and eval().
-template <class Lobe>
-bool sample_by_eval(const Lobe& lobe, Vec3f wo, Vec2f u, float choice, LobeSample& out) {
-    if (!lobe.direction(wo, u, choice, out)) return false;
-    const LobeEval e = lobe.eval(wo, out.wi);
-    if (!(e.pdf > 0.0f)) return false;
-    out.weight = e.f / e.pdf;
-    out.pdf = e.pdf;
-    return true;
+/// A direction of a smooth lobe with its whole ratio of f over pdf.
+struct SmoothSample {
+    LobeDirection to;
+    Color weight;
+};
+
+/// A lobe is a plain struct, the same for every surface point of its kind:
+///  - kDelta: it is smooth, all in one or two directions;
+///  - Lanes: its parameters for sixteen points, by components, with set(lane, lobe) and get(lane);
+///  - albedo(wo): the share of light it sends back, roughly, for choosing among lobes;
+///  - extended lobes: eval(wo, wi) and direction(wo, u, choice), without branches: they run for
+///    sixteen lanes at once; spread(): the half angle by which a ray cone grows, radians, rough;
+///  - smooth lobes: sample(wo, choice).
+
+/// a if `yes`, else b, by a blend: both are computed.
+inline float pick(bool yes, float a, float b) { return yes ? a : b; }
+inline Vec3f pick(bool yes, Vec3f a, Vec3f b) {
+    return {yes ? a.x : b.x, yes ? a.y : b.y, yes ? a.z : b.z};
 }
 
 /// Relative luminance of linear Rec.709; near enough for choosing lobes and lights in any working

@@ -8,21 +8,19 @@ namespace tessera {
 
 struct DiffuseLobe {
     static constexpr bool kDelta = false;
+    struct Lanes {
+        void set(int, const DiffuseLobe&) {}
+        DiffuseLobe get(int) const { return {}; }
+    };
 
     LobeEval eval(Vec3f, Vec3f wi) const {
-        if (wi.z <= 0.0f) return {};
-        const float p = wi.z * kInvPi;
+        const float p = std::max(wi.z, 0.0f) * kInvPi;
         return {Color(p), p};
     }
-    bool direction(Vec3f, Vec2f u, float, LobeSample& out) const {
-        out = {warp_cosine(u), Color(1.0f), 0.0f, LobeClass::diffuse, false, 1.0f, 0.2f};
-        return out.wi.z > 0.0f;
+    LobeDirection direction(Vec3f, Vec2f u, float) const {
+        return {warp_cosine(u), 1.0f, LobeClass::diffuse};
     }
-    bool sample(Vec3f wo, Vec2f u, float choice, LobeSample& out) const {
-        if (!direction(wo, u, choice, out)) return false;
-        out.pdf = out.wi.z * kInvPi;
-        return true;
-    }
+    float spread() const { return 0.2f; }
     Color albedo(Vec3f) const { return Color(1.0f); }
 };
 

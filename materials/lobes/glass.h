@@ -9,52 +9,68 @@
 
 namespace tessera {
 
+/// What boundaries that let light through have in common.
+struct GlassLanes {
+    float eta[kLanes];
+    Vec3Lanes reflect_tint, transmit_tint;
+
+    template <class Glass>
+    void set(int i, const Glass& g) {
+        eta[i] = g.eta;
+        reflect_tint.set(i, g.reflect_tint);
+        transmit_tint.set(i, g.transmit_tint);
+    }
+};
+
+inline LobeDirection mirrored(Vec3f wo) { return {{-wo.x, -wo.y, wo.z}, 1.0f, LobeClass::glossy}; }
+
 struct RoughGlass {
     static constexpr bool kDelta = false;
     Ggx ggx;
     float eta = 1.5f;  // beyond over here, seen from wo
     Color reflect_tint{1.0f}, transmit_tint{1.0f};
 
+    struct Lanes : GlassLanes {
+        float ax[kLanes], ay[kLanes];
+        void set(int i, const RoughGlass& g) {
+            GlassLanes::set(i, g);
+            ax[i] = g.ggx.ax, ay[i] = g.ggx.ay;
+        }
+        RoughGlass get(int i) const {
+            return {{ax[i], ay[i]}, eta[i], reflect_tint[i], transmit_tint[i]};
+        }
+    };
+
     LobeEval eval(Vec3f wo, Vec3f wi) const {
         const bool reflected = wi.z > 0.0f;
-        if (wi.z == 0.0f) return {};
-        Vec3f h = reflected ? wo + wi : wo + wi * eta;
-        const float l2 = length2(h);
-        if (!(l2 > 0.0f)) return {};
-        h = h / std::sqrt(l2);
-        if (h.z < 0.0f) h = -h;
+        const Vec3f sum = wo + wi * pick(reflected, 1.0f, eta);
+        const float l2 = length2(sum);
+        const Vec3f up = sum / std::sqrt(l2);
+        const Vec3f h = up * pick(up.z < 0.0f, -1.0f, 1.0f);
         const float oh = dot(wo, h), ih = dot(wi, h);
-        if (oh <= 0.0f || (ih > 0.0f) != reflected) return {};
-        const float fresnel = fresnel_dielectric(oh, eta);
+        const float fresnel = fresnel_dielectric(std::min(std::max(oh, 0.0f), 1.0f), eta);
         const float visible = ggx.visible(wo, h);
         const float g = ggx.g2(wo, {wi.x, wi.y, std::fabs(wi.z)}) / ggx.g1(wo);
-        if (reflected) {
-            const float pdf = visible * fresnel / (4.0f * oh);
-            return {reflect_tint * (pdf * g), pdf};
-        }
         const float denom = ih + oh / eta;
-        const float pdf = visible * (1.0f - fresnel) * std::fabs(ih) / (denom * denom);
-        return {transmit_tint * (pdf * g / (eta * eta)), pdf};
+        const float pdf_r = visible * fresnel / (4.0f * oh);
+        const float pdf_t = visible * (1.0f - fresnel) * std::fabs(ih) / (denom * denom);
+        const Color f =
+            pick(reflected, reflect_tint * (pdf_r * g), transmit_tint * (pdf_t * g / (eta * eta)));
+        const bool there = (wi.z != 0.0f) & (l2 > 0.0f) & (oh > 0.0f) & ((ih > 0.0f) == reflected);
+        return {pick(there, f, Color(0.0f)), pick(there, pick(reflected, pdf_r, pdf_t), 0.0f)};
     }
-    bool direction(Vec3f wo, Vec2f u, float choice, LobeSample& out) const {
+    LobeDirection direction(Vec3f wo, Vec2f u, float choice) const {
         const Vec3f h = ggx.sample_visible(wo, u);
         const float oh = dot(wo, h);
-        if (!(oh > 0.0f)) return false;
         float cos_t = 0;
-        const float fresnel = fresnel_dielectric(oh, eta, &cos_t);
+        const float fresnel = fresnel_dielectric(clamp01(oh), eta, &cos_t);
         const bool reflected = choice < fresnel;
-        out = {reflected ? reflect(wo, h) : normalize(refract(wo, h, eta, cos_t)),
-               Color(0.0f),
-               0.0f,
-               reflected ? LobeClass::glossy : LobeClass::transmission,
-               false,
-               reflected ? 1.0f : eta,
-               0.25f * std::max(ggx.ax, ggx.ay)};
-        return reflected ? out.wi.z > 0.0f : out.wi.z < 0.0f;
+        const Vec3f r = reflect(wo, h), t = normalize(refract(wo, h, eta, cos_t));
+        const bool there = (oh > 0.0f) & (reflected ? r.z > 0.0f : t.z < 0.0f);
+        return {pick(there, pick(reflected, r, t), Vec3f(0.0f)), pick(reflected, 1.0f, eta),
+                reflected ? LobeClass::glossy : LobeClass::transmission};
     }
-    bool sample(Vec3f wo, Vec2f u, float choice, LobeSample& out) const {
-        return sample_by_eval(*this, wo, u, choice, out);
-    }
+    float spread() const { return 0.25f * std::max(ggx.ax, ggx.ay); }
     Color albedo(Vec3f wo) const {
         const float f = fresnel_dielectric(wo.z, eta);
         return reflect_tint * f + transmit_tint * (1.0f - f);
@@ -66,30 +82,31 @@ struct SmoothGlass {
     float eta = 1.5f;
     Color reflect_tint{1.0f}, transmit_tint{1.0f};
 
-    LobeEval eval(Vec3f, Vec3f) const { return {}; }
-    bool sample(Vec3f wo, Vec2f, float choice, LobeSample& out) const {
+    struct Lanes : GlassLanes {
+        SmoothGlass get(int i) const { return {eta[i], reflect_tint[i], transmit_tint[i]}; }
+    };
+
+    SmoothSample sample(Vec3f wo, float choice) const {
         float cos_t = 0;
         const float fresnel = fresnel_dielectric(wo.z, eta, &cos_t);
-        out = choice < fresnel ? reflected(wo) : transmitted(wo, cos_t);
-        return true;
+        return choice < fresnel ? SmoothSample{mirrored(wo), reflect_tint} : through(wo, cos_t);
     }
-    /// The two children of a ray tree, weighted by nothing: the caller multiplies by Fresnel's
-    /// shares.
-    LobeSample reflected(Vec3f wo) const {
-        return {{-wo.x, -wo.y, wo.z}, reflect_tint, 0.0f, LobeClass::glossy, true, 1.0f, 0.0f};
-    }
-    LobeSample transmitted(Vec3f wo, float cos_t) const {
-        return {normalize(refract(wo, {0, 0, 1}, eta, cos_t)),
-                transmit_tint * (1.0f / (eta * eta)),
-                0.0f,
-                LobeClass::transmission,
-                true,
-                eta,
-                0.0f};
+    template <class Child>
+    void branch(Vec3f wo, Child child) const {
+        float cos_t = 0;
+        const float fresnel = fresnel_dielectric(wo.z, eta, &cos_t);
+        child(SmoothSample{mirrored(wo), reflect_tint}, fresnel);
+        if (fresnel < 1.0f) child(through(wo, cos_t), 1.0f - fresnel);
     }
     Color albedo(Vec3f wo) const {
         const float f = fresnel_dielectric(wo.z, eta);
         return reflect_tint * f + transmit_tint * (1.0f - f);
+    }
+
+private:
+    SmoothSample through(Vec3f wo, float cos_t) const {
+        return {{normalize(refract(wo, {0, 0, 1}, eta, cos_t)), eta, LobeClass::transmission},
+                transmit_tint * (1.0f / (eta * eta))};
     }
 };
 
@@ -100,25 +117,31 @@ struct ThinGlass {
     float eta = 1.5f;
     Color reflect_tint{1.0f}, transmit_tint{1.0f};
 
-    float reflectance(float cos_i) const {
-        const float f = fresnel_dielectric(cos_i, eta);
-        return 2.0f * f / (1.0f + f);
+    struct Lanes : GlassLanes {
+        ThinGlass get(int i) const { return {eta[i], reflect_tint[i], transmit_tint[i]}; }
+    };
+
+    SmoothSample sample(Vec3f wo, float choice) const {
+        return choice < reflectance(wo.z) ? SmoothSample{mirrored(wo), reflect_tint}
+                                          : SmoothSample{through(wo), transmit_tint};
     }
-    LobeEval eval(Vec3f, Vec3f) const { return {}; }
-    bool sample(Vec3f wo, Vec2f, float choice, LobeSample& out) const {
-        out = choice < reflectance(wo.z) ? reflected(wo) : transmitted(wo);
-        return true;
-    }
-    LobeSample reflected(Vec3f wo) const {
-        return {{-wo.x, -wo.y, wo.z}, reflect_tint, 0.0f, LobeClass::glossy, true, 1.0f, 0.0f};
-    }
-    LobeSample transmitted(Vec3f wo) const {
-        return {-wo, transmit_tint, 0.0f, LobeClass::transmission, true, 1.0f, 0.0f};
+    template <class Child>
+    void branch(Vec3f wo, Child child) const {
+        const float r = reflectance(wo.z);
+        child(SmoothSample{mirrored(wo), reflect_tint}, r);
+        child(SmoothSample{through(wo), transmit_tint}, 1.0f - r);
     }
     Color albedo(Vec3f wo) const {
         const float r = reflectance(wo.z);
         return reflect_tint * r + transmit_tint * (1.0f - r);
     }
+
+private:
+    float reflectance(float cos_i) const {
+        const float f = fresnel_dielectric(cos_i, eta);
+        return 2.0f * f / (1.0f + f);
+    }
+    static LobeDirection through(Vec3f wo) { return {-wo, 1.0f, LobeClass::transmission}; }
 };
 
 }  // namespace tessera

@@ -36,7 +36,7 @@ public:
             draw_samples(depth);
             each(alive_, [&](int i) { arrive(i, depth); });
             face_viewer();
-            each(alive_, [&](int i) { find_lobes(i); });
+            find_lobes();
             sample_lights();
             scatter(depth);
             occlude(depth);
@@ -214,7 +214,7 @@ private:
         for (int i = 0; i < kLanes; ++i) {
             const Frame f(visible_normal(ns[i], wo[i]));
             frame_.set_shading(i, f);
-            frame_.wo.set(i, f.to_local(wo[i]));
+            lobes_.wo.set(i, f.to_local(wo[i]));
         }
         if constexpr (F.textures || F.specular) {
             each(alive_, [&](int i) {
@@ -222,30 +222,34 @@ private:
                 if (!frame_follows_texture<F>(scene_.program(s.material))) return;
                 const Frame f = frame_along(frame_.n[i], s.dpdu);
                 frame_.set_shading(i, f);
-                frame_.wo.set(i, f.to_local(wo[i]));
+                lobes_.wo.set(i, f.to_local(wo[i]));
             });
         }
     }
 
-    void find_lobes(int i) noexcept {
-        make(lobes_[i], [&] {
-            return make_lobes<F>(scene_.program(surface_[i].material), shade_in_[i],
-                                 scene_.textures(), frame_.wo[i], frame_.front.is[i] != 0);
+    void find_lobes() noexcept {
+        lobes_.clear();
+        each(alive_, [&](int i) {
+            push_lobes<F>(scene_.program(surface_[i].material), shade_in_[i], scene_.textures(),
+                          frame_.front.is[i] != 0, i, lobes_);
+            from_[i] = {surface_[i].p};
         });
-        from_[i] = {surface_[i].p};
-        if (!depth_[i].layers_done) note_layers(i);
+        lobes_.prepare();
+        each(alive_, [&](int i) {
+            if (!depth_[i].layers_done) note_layers(i);
+        });
     }
 
     // ---- next-event estimation
     void sample_lights() noexcept {
         shadow_lanes_ = 0;
         if (!scene_.lights().sampled()) return;
-        LaneMask lanes = 0;
-        each(alive_,
-             [&](int i) { lanes |= static_cast<LaneMask>(lobes_[i].has_extended_part()) << i; });
+        LaneMask lanes = alive_ & lobes_.extended();
         if (lanes == 0) return;
         lanes = scene_.lights().sample(lanes, from_.array(), choice_u_.x, light_u_, light_);
         lanes &= aim_at_lights();
+        if (lanes == 0) return;
+        lobes_.eval(lanes, wi_);
         each(lanes, [&](int i) { weigh_light(i); });
     }
 
@@ -270,8 +274,8 @@ private:
     }
 
     void weigh_light(int i) noexcept {
-        const LobeEval e = lobes_[i].eval(frame_.wo[i], wi_[i]);
-        if (!(max_component(e.f) > 0.0f)) return;
+        const Color f = lobes_.f(i);
+        if (!(max_component(f) > 0.0f)) return;
         Color radiance = light_.radiance[i];
         if (light_.material[i] >= 0) {
             ShadeInput in;
@@ -279,8 +283,8 @@ private:
             radiance = scene_.program(light_.material[i]).visible_emission(in, scene_.textures());
         }
         const float pdf = light_.pdf[i];
-        const float weight = light_.delta[i] ? 1.0f : mis_power(pdf, e.pdf);
-        const Color c = throughput_[i] * e.f * radiance * (weight / pdf);
+        const float weight = light_.delta[i] ? 1.0f : mis_power(pdf, lobes_.pdf(i));
+        const Color c = throughput_[i] * f * radiance * (weight / pdf);
         if (!(max_component(c) > 0.0f)) return;
         if (!traceable(shadow_o_[i], shadow_d_[i])) return invalid(InvalidCause::shadow_ray, i);
         pending_[i] = c;
@@ -313,14 +317,10 @@ private:
 
     // ---- scatter: the paths go on, or stop
     void scatter(std::uint32_t depth) noexcept {
-        each(alive_, [&](int i) {
-            if (!lobes_[i].sample(frame_.wo[i], bsdf_u_.at(i), choice_u_.y[i], scattered_[i]))
-                return stop(i);
-            wi_.set(i, scattered_[i].wi);
-        });
+        alive_ = lobes_.sample(alive_, bsdf_u_, choice_u_.y, scattered_);
         LaneFlags leaves;
         for (int i = 0; i < kLanes; ++i) {
-            const Vec3f local = wi_[i], wi = frame_.shading(i).to_world(local);
+            const Vec3f local = scattered_.wi[i], wi = frame_.shading(i).to_world(local);
             next_o_.set(i, offset_origin(p_[i], p_error_[i], frame_.ng[i], wi));
             next_d_.set(i, wi);
             leaves.is[i] = same_side(wi, local, frame_.ng[i]);
@@ -332,18 +332,18 @@ private:
     }
 
     bool carry_on(int i, std::uint32_t depth) noexcept {
-        const LobeSample& b = scattered_[i];
-        throughput_[i] *= b.weight;
+        const LobeSamples& b = scattered_;
+        throughput_[i] *= b.weight[i];
         PathDepth& at = depth_[i];
         // Behind a mirror or clear glass the albedo is that of what is seen there.
-        if (!b.delta) at.layers_done = true;
+        if (b.pdf[i] > 0.0f) at.layers_done = true;
         if (!at.layers_done) out_[i].albedo = Color(0.0f);
-        bsdf_pdf_[i] = b.pdf;
-        eta_scale_[i] *= b.eta * b.eta;
+        bsdf_pdf_[i] = b.pdf[i];
+        eta_scale_[i] *= b.eta[i] * b.eta[i];
         if (!(max_component(throughput_[i]) > 0.0f)) return false;
 
         at.last = depth + 1 > static_cast<std::uint32_t>(settings_.max_depth);
-        switch (b.cls) {
+        switch (static_cast<LobeClass>(b.cls[i])) {
             case LobeClass::diffuse:
                 at.last |= ++at.diffuse > settings_.max_diffuse_depth;
                 break;
@@ -363,7 +363,7 @@ private:
             }
         }
         ray_[i] = Ray{next_o_[i], next_d_[i]};
-        cone_spread_[i] = std::max(cone_spread_[i], b.spread);
+        cone_spread_[i] = std::max(cone_spread_[i], b.spread[i]);
         if (!traceable(ray_[i].o, ray_[i].d)) {
             invalid(InvalidCause::bounce_ray, i);
             return false;
@@ -383,9 +383,7 @@ private:
     }
 
     // Albedo of the first surface that is not a mirror or clear glass, as denoisers want it.
-    void note_layers(int i) noexcept {
-        out_[i].albedo = throughput_[i] * lobes_[i].albedo(frame_.wo[i]);
-    }
+    void note_layers(int i) noexcept { out_[i].albedo = throughput_[i] * lobes_.albedo(i); }
 
     void invalid(InvalidCause cause, int i) noexcept {
         counters_.add_invalid(cause, lane_x(job_, i), lane_y(job_, i), job_.index);
@@ -434,13 +432,13 @@ private:
     Lanes<ShadeInput> shade_in_;
     Vec3Lanes p_, p_error_;
     FacingFrames frame_;
-    Lanes<Lobes<F>> lobes_;
+    Lobes<F> lobes_;
     LightSamples light_;
-    Vec3Lanes wi_;  // local, of the light or of the next ray
+    Vec3Lanes wi_;  // local, of the light
     Vec3Lanes shadow_o_, shadow_d_;
     float shadow_t_max_[kLanes];
     Lanes<Color> pending_;  // light that waits for its shadow ray
-    Lanes<LobeSample> scattered_;
+    LobeSamples scattered_;
     Vec3Lanes next_o_, next_d_;
     HitPacket packet_;
 };

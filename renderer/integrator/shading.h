@@ -10,32 +10,9 @@
 
 namespace tessera {
 
-/// A LobeList that holds one Lambertian lobe and is as cheap as that: what kernels without specular
-/// lobes use. Every operation gives LobeList's bits.
-class DiffuseOnly {
-public:
-    DiffuseOnly() = default;
-    explicit DiffuseOnly(Color weight) : weight_(weight) {}
-    bool empty() const noexcept { return !(max_component(weight_) > 0.0f); }
-    bool has_extended_part() const noexcept { return !empty(); }
-    LobeEval eval(Vec3f wo, Vec3f wi) const noexcept {
-        LobeEval e = DiffuseLobe{}.eval(wo, wi);
-        e.f *= weight_;
-        return e;
-    }
-    bool sample(Vec3f wo, Vec2f u, float choice, LobeSample& out) const noexcept {
-        if (empty() || !DiffuseLobe{}.sample(wo, u, choice, out)) return false;
-        out.weight *= weight_;
-        return true;
-    }
-    Color albedo(Vec3f) const noexcept { return weight_; }
-
-private:
-    Color weight_{0.0f};
-};
-
 template <Features F>
-using Lobes = std::conditional_t<F.specular || F.transmission, LobeList, DiffuseOnly>;
+using Lobes = std::conditional_t<F.transmission, AllLobes,
+                                 std::conditional_t<F.specular, OpaqueLobes, DiffuseLobes>>;
 
 /// The frame that faces the viewer.
 struct FacingFrame {
@@ -48,7 +25,7 @@ struct FacingFrame {
 /// Those of a block.
 struct FacingFrames {
     Vec3Lanes s, t, n;  // the shading frames' axes
-    Vec3Lanes ng, wo;
+    Vec3Lanes ng;
     LaneFlags front;
 
     Frame shading(int i) const { return {s[i], t[i], n[i]}; }
@@ -103,23 +80,15 @@ FacingFrame facing_frame(const SurfacePoint& s, const ShaderProgram& program, co
     return f;
 }
 
-/// What openpbr_lobes makes of a Lambertian surface, without the detour.
-inline LobeList diffuse_lobes(Color base_color) {
-    LobeList lobes;
-    lobes.push(DiffuseLobe{}, base_color);
-    lobes.prepare({});
-    return lobes;
-}
-
+/// The lobes of a lane, seen from lobes.wo.
 template <Features F>
-Lobes<F> make_lobes(const ShaderProgram& program, const ShadeInput& in,
-                    const TextureStore* textures, Vec3f wo, bool front) {
+void push_lobes(const ShaderProgram& program, const ShadeInput& in, const TextureStore* textures,
+                bool front, int lane, Lobes<F>& lobes) {
     if constexpr (F.specular || F.transmission) {
-        if (!program.facts().specular) return diffuse_lobes(program.base_color(in, textures));
-        return openpbr_lobes(program.surface(in, textures), wo, front);
-    } else {
-        return DiffuseOnly(program.base_color(in, textures));
+        if (program.facts().specular)
+            return openpbr_lobes(program.surface(in, textures), front, lane, lobes);
     }
+    lobes.push(lane, DiffuseLobe{}, program.base_color(in, textures));
 }
 
 /// What the program reads at s; fills in s's texture frame if it reads one.

@@ -31,6 +31,7 @@ public:
         for (std::uint32_t step = 0; pop(); ++step) {
             intersect(step);
             shade_ = 0;
+            lobes_.clear();
             for (LaneMask m = alive_; m != 0; m &= m - 1) arrive(std::countr_zero(m), step);
             for (int l = 0; l < scene_.lights().size(); ++l) light(l, step);
             for (LaneMask m = shade_; m != 0; m &= m - 1) branch(std::countr_zero(m));
@@ -54,7 +55,6 @@ private:
     struct Vertex {
         SurfacePoint s;
         FacingFrame frame;
-        LobeList lobes;
     };
 
     void start() noexcept {
@@ -129,13 +129,11 @@ private:
         if (program->facts().emissive)
             out_[i].radiance += node.weight * program->emission(in, scene_.textures());
         v.frame = facing_frame<F>(v.s, *program, in, scene_.textures(), -node.ray.d);
-        v.lobes = make_lobes<F>(*program, in, scene_.textures(), v.frame.wo, v.frame.front);
-        if (node.depth == 0) out_[i].albedo = v.lobes.albedo(v.frame.wo);
-        for (int k = 0; k < v.lobes.size(); ++k) {
-            if (std::holds_alternative<DiffuseLobe>(v.lobes[k].model)) {
-                out_[i].radiance += node.weight * v.lobes[k].weight * scene_.lights().ambient();
-            }
-        }
+        lobes_.wo.set(i, v.frame.wo);
+        push_lobes<F>(*program, in, scene_.textures(), v.frame.front, i, lobes_);
+        if (node.depth == 0) out_[i].albedo = lobes_.albedo(i);
+        out_[i].radiance +=
+            node.weight * lobes_.template weight<DiffuseLobe>(i) * scene_.lights().ambient();
         shade_ |= 1u << i;
     }
 
@@ -148,9 +146,17 @@ private:
         LaneMask waiting = 0;
         if (std::holds_alternative<EnvironmentLight>(scene_.lights()[index]))
             return;  // that is the ambient light
-        for (LaneMask m = shade_; m != 0; m &= m - 1) {
+        LaneMask aimed = 0;
+        for (LaneMask m = shade_ & lobes_.extended(); m != 0; m &= m - 1) {
             const int i = std::countr_zero(m);
-            if (aim(i, scene_.lights()[index], u.at(i))) waiting |= 1u << i;
+            if (aim(i, scene_.lights()[index], u.at(i))) aimed |= 1u << i;
+        }
+        if (aimed == 0) return;
+        lobes_.eval(aimed, wi_);
+        for (LaneMask m = aimed; m != 0; m &= m - 1) {
+            const int i = std::countr_zero(m);
+            pending_[i] *= lobes_.f(i);
+            if (max_component(pending_[i]) > 0.0f) waiting |= 1u << i;
         }
         if (waiting == 0) return;
         counters_.rays.shadow += static_cast<std::uint64_t>(std::popcount(waiting));
@@ -166,7 +172,7 @@ private:
     bool aim(int i, const Light& source, Vec2f u) noexcept {
         const Vertex& v = vertex_[i];
         LightSample light;
-        if (!v.lobes.has_extended_part() || !sample_light(source, {v.s.p}, u, light)) return false;
+        if (!sample_light(source, {v.s.p}, u, light)) return false;
         const Vec3f wi = v.frame.shading.to_local(light.wi);
         if (!same_side(light.wi, wi, v.frame.ng)) return false;
         if (light.material >= 0) {
@@ -174,9 +180,8 @@ private:
             in.uv = light.uv;
             light.radiance = scene_.program(light.material).visible_emission(in, scene_.textures());
         }
-        pending_[i] =
-            node_[i].weight * v.lobes.eval(v.frame.wo, wi).f * light.radiance * (1.0f / light.pdf);
-        if (!(max_component(pending_[i]) > 0.0f)) return false;
+        wi_.set(i, wi);
+        pending_[i] = node_[i].weight * light.radiance * (1.0f / light.pdf);
         const Vec3f o = offset_origin(v.s.p, v.s.p_error, v.s.ng, light.wi);
         Ray ray{o, light.wi, kInfinity, kOtherRays};
         if (!light.infinite) {
@@ -193,37 +198,16 @@ private:
 
     // Mirror and refraction rays of the smooth lobes.
     void branch(int i) noexcept {
-        const Vertex& v = vertex_[i];
         if (node_[i].depth >= max_depth_) return;
-        for (int k = 0; k < v.lobes.size(); ++k) {
-            const Lobe& lobe = v.lobes[k];
-            if (!lobe.delta) continue;
-            if (const auto* glass = std::get_if<SmoothGlass>(&lobe.model)) {
-                float cos_t = 0;
-                const float f = fresnel_dielectric(v.frame.wo.z, glass->eta, &cos_t);
-                child(i, glass->reflected(v.frame.wo), lobe.weight * f);
-                if (f < 1.0f)
-                    child(i, glass->transmitted(v.frame.wo, cos_t), lobe.weight * (1.0f - f));
-            } else if (const auto* thin = std::get_if<ThinGlass>(&lobe.model)) {
-                const float r = thin->reflectance(v.frame.wo.z);
-                child(i, thin->reflected(v.frame.wo), lobe.weight * r);
-                child(i, thin->transmitted(v.frame.wo), lobe.weight * (1.0f - r));
-            } else {
-                LobeSample s;
-                const auto sample = [&](const auto& m) {
-                    return m.sample(v.frame.wo, Vec2f{}, 0.0f, s);
-                };
-                if (std::visit(sample, lobe.model)) child(i, s, lobe.weight);
-            }
-        }
+        lobes_.branch(i, [&](const SmoothSample& s, Color share) { child(i, s, share); });
     }
 
-    void child(int i, const LobeSample& s, Color share) noexcept {
+    void child(int i, const SmoothSample& s, Color share) noexcept {
         const Vertex& v = vertex_[i];
         const Node& node = node_[i];
-        const Vec3f wi = v.frame.shading.to_world(s.wi);
+        const Vec3f wi = v.frame.shading.to_world(s.to.wi);
         const Color weight = node.weight * s.weight * share;
-        if (!(max_component(weight) > kFaintest) || !same_side(wi, s.wi, v.frame.ng)) return;
+        if (!(max_component(weight) > kFaintest) || !same_side(wi, s.to.wi, v.frame.ng)) return;
         push(i,
              {{offset_origin(v.s.p, v.s.p_error, v.s.ng, wi), wi, kInfinity, kOtherRays},
               weight,
@@ -269,6 +253,8 @@ private:
     RayPacket shadow_;
     Node node_[kLanes];
     Vertex vertex_[kLanes];
+    Lobes<F> lobes_;
+    Vec3Lanes wi_;  // local, of the light
     Color pending_[kLanes];
     Node stack_[kLanes][kStack];
     int size_[kLanes]{};

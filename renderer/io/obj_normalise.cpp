@@ -175,7 +175,11 @@ void ObjNormaliser::face(std::string_view rest) {
             out_ += word;
         }
     }
-    if (corners < 3) return drop("broken face: fewer than three corners");
+    if (corners < 3) {
+        // Exporters write edges so.
+        out_.resize(begin);
+        return tally_->add("face of fewer than three corners dropped", line);
+    }
     if (attributes_bad) tally_->add("face names a vt or vn that is not there; it is ignored", line);
     out_ += '\n';
     if (found_.face_lines.size() >= static_cast<std::size_t>(kMaxCount))

@@ -23,18 +23,26 @@ void sobol_pairs(benchmark::State& state) {
 }
 BENCHMARK(sobol_pairs);
 
-// A glossy plastic: two lobes made, evaluated and sampled.
+// A glossy plastic at sixteen points: two lobes made, evaluated and sampled.
 void plastic_sample(benchmark::State& state) {
-    SurfaceParams p;
-    const Vec3f wo = normalize(Vec3f{0.3f, 0.1f, 0.8f});
-    std::uint32_t index = 0;
+    const SurfaceParams p;
+    OpaqueLobes lobes;
+    std::uint32_t seeds[kLanes] = {7}, index = 0;
     for (auto _ : state) {
-        const LobeList lobes = openpbr_lobes(p, wo, true);
-        const Vec2f u = sample_pair(7, index, 0), c = sample_pair(7, index++, 1);
-        LobeSample s;
-        benchmark::DoNotOptimize(lobes.sample(wo, u, c.x, s));
-        benchmark::DoNotOptimize(s);
+        lobes.clear();
+        for (int i = 0; i < kLanes; ++i) {
+            lobes.wo.set(i, normalize(Vec3f{0.3f, 0.1f, 0.8f}));
+            openpbr_lobes(p, true, i, lobes);
+        }
+        lobes.prepare();
+        SamplePairs u, c;
+        sample_pairs(seeds, index, 0, u);
+        sample_pairs(seeds, index++, 1, c);
+        LobeSamples out;
+        benchmark::DoNotOptimize(lobes.sample(kAllLanes, u, c.x, out));
+        benchmark::DoNotOptimize(out);
     }
+    state.SetItemsProcessed(state.iterations() * kLanes);
 }
 BENCHMARK(plastic_sample);
 

@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include "materials/energy.h"
-#include "materials/surface/openpbr.h"
 #include "renderer/core/sampler.h"
-#include "tests/support/drawn.h"
+#include "tests/support/lobe_probe.h"
 #include "tests/support/parallel_cases.h"
 
 using namespace tessera;
@@ -16,11 +15,11 @@ Vec3f seen_at(float cosine) { return {safe_sqrt(1 - cosine * cosine), 0, cosine}
 
 // Energy sent to all directions from wo: radiance's 1/eta^2 at a boundary is taken back. Error
 // below 1e-3: 2^13 stratified points of weights between zero and one.
-double albedo_of(const LobeList& lobes, Vec3f wo) {
+double albedo_of(const LobeProbe& lobes) {
     constexpr std::uint32_t kPoints = 1u << 13;
     double sum = 0;
     for (std::uint32_t i = 0; i < kPoints; ++i) {
-        const auto s = drawn(lobes, wo, sample_pair(77, i, 0), sample_pair(77, i, 1).x);
+        const auto s = lobes.sample(sample_pair(77, i, 0), sample_pair(77, i, 1).x);
         if (s)
             sum += static_cast<double>(max_component(s->weight)) * static_cast<double>(s->eta) *
                    static_cast<double>(s->eta);
@@ -80,13 +79,11 @@ TEST_CASE("furnace: no surface of openpbr gives back more light than it gets") {
     const auto check = [](const FurnaceCase& c) -> std::string {
         const bool layered = c.p.base_metalness < 1.0f && c.p.transmission_weight < 1.0f;
         SurfaceParams p = c.p;
-        const double by_table =
-            albedo_of(openpbr_lobes(p, seen_at(c.cosine), c.front), seen_at(c.cosine));
+        const double by_table = albedo_of(LobeProbe(p, seen_at(c.cosine), c.front));
         const Ggx ggx = openpbr_ggx(p.specular_roughness, p.specular_roughness_anisotropy);
         const ReflectionAlbedoCurve curve(std::sqrt(ggx.ax * ggx.ay), openpbr_boundary_eta(p));
         p.boundary = &curve;
-        const double by_curve =
-            albedo_of(openpbr_lobes(p, seen_at(c.cosine), c.front), seen_at(c.cosine));
+        const double by_curve = albedo_of(LobeProbe(p, seen_at(c.cosine), c.front));
         return by_table <= 1 + (layered ? 0.006 : 0.001) &&
                        by_curve <= 1 + (layered ? 0.004 : 0.001)
                    ? ""
@@ -100,23 +97,20 @@ TEST_CASE("furnace: white Lambert, smooth glass and a perfect mirror give back e
         SurfaceParams p;
         p.base_color = Color(1.0f);
         p.specular_weight = 0;
-        CHECK(albedo_of(openpbr_lobes(p, seen_at(cosine), true), seen_at(cosine)) ==
-              doctest::Approx(1).epsilon(1e-6));
+        CHECK(albedo_of(LobeProbe(p, seen_at(cosine), true)) == doctest::Approx(1).epsilon(1e-6));
         p.specular_weight = 1;
         p.specular_roughness = 0;
         p.base_metalness = 1;
-        CHECK(albedo_of(openpbr_lobes(p, seen_at(cosine), true), seen_at(cosine)) ==
-              doctest::Approx(1).epsilon(1e-6));
+        CHECK(albedo_of(LobeProbe(p, seen_at(cosine), true)) == doctest::Approx(1).epsilon(1e-6));
         p.base_metalness = 0;
         p.transmission_weight = 1;
         for (const bool front : {true, false}) {
-            CHECK(albedo_of(openpbr_lobes(p, seen_at(cosine), front), seen_at(cosine)) ==
+            CHECK(albedo_of(LobeProbe(p, seen_at(cosine), front)) ==
                   doctest::Approx(1).epsilon(1e-6));
         }
         // A smooth layered plastic: boundary and base share without loss.
         p.transmission_weight = 0;
-        CHECK(albedo_of(openpbr_lobes(p, seen_at(cosine), true), seen_at(cosine)) ==
-              doctest::Approx(1).epsilon(2e-3));
+        CHECK(albedo_of(LobeProbe(p, seen_at(cosine), true)) == doctest::Approx(1).epsilon(2e-3));
     }
 }
 
@@ -128,11 +122,11 @@ TEST_CASE("furnace: what a rough surface loses to single scattering is bounded")
         p.base_color = Color(1.0f);
         p.base_metalness = 1;
         p.specular_roughness = roughness;
-        const double metal = albedo_of(openpbr_lobes(p, seen_at(0.8f), true), seen_at(0.8f));
+        const double metal = albedo_of(LobeProbe(p, seen_at(0.8f), true));
         CHECK(metal > (roughness < 0.5f ? 0.94 : 0.3));
         p.base_metalness = 0;
         p.transmission_weight = 1;
-        const double glass = albedo_of(openpbr_lobes(p, seen_at(0.8f), true), seen_at(0.8f));
+        const double glass = albedo_of(LobeProbe(p, seen_at(0.8f), true));
         CHECK(glass > (roughness < 0.5f ? 0.98 : 0.75));
     }
 }

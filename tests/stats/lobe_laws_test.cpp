@@ -2,8 +2,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include "materials/surface/openpbr.h"
-#include "tests/support/drawn.h"
+#include "tests/support/lobe_probe.h"
 #include "tests/support/parallel_cases.h"
 #include "tests/support/random.h"
 
@@ -109,13 +108,13 @@ TEST_CASE("smooth glass: refracts by Snell's law and loses nothing") {
         // root.
         REQUIRE(std::fabs(used - fresnel) < 2e-3);
         if (std::fabs(fresnel - 1) > 0.05) REQUIRE(std::fabs(used - fresnel) < 1e-4);
-        const auto up = drawn(glass, wo, {}, static_cast<float>(0.5 * used));
+        const auto up = LobeProbe(glass, wo).sample({}, static_cast<float>(0.5 * used));
         REQUIRE(up);
         REQUIRE(up->delta);
         REQUIRE(up->wi == Vec3f{-wo.x, -wo.y, wo.z});
         REQUIRE(up->weight == Color(1.0f));
         if (!(used < 1)) continue;
-        const auto down = drawn(glass, wo, {}, 0x1.fffffep-1f);
+        const auto down = LobeProbe(glass, wo).sample({}, 0x1.fffffep-1f);
         REQUIRE(down);
         REQUIRE(down->wi.z < 0.0f);
         REQUIRE(down->eta == eta);
@@ -141,8 +140,8 @@ TEST_CASE("smooth lobes: reflected and transmitted shares come as often as they 
             int glass = 0, thin = 0;
             constexpr int kTries = 100000;
             for (int i = 0; i < kTries; ++i) {
-                glass += drawn(SmoothGlass{eta}, wo, {}, n.unit())->wi.z > 0.0f;
-                thin += drawn(ThinGlass{eta}, wo, {}, n.unit())->wi.z > 0.0f;
+                glass += LobeProbe(SmoothGlass{eta}, wo).sample({}, n.unit())->wi.z > 0.0f;
+                thin += LobeProbe(ThinGlass{eta}, wo).sample({}, n.unit())->wi.z > 0.0f;
             }
             CAPTURE(eta);
             CAPTURE(z);
@@ -150,7 +149,7 @@ TEST_CASE("smooth lobes: reflected and transmitted shares come as often as they 
             const auto slack = [](double p) { return 4.5 * std::sqrt(p * (1 - p) * kTries) + 1; };
             CHECK(std::fabs(glass - f * kTries) < slack(f));
             CHECK(std::fabs(thin - thin_r * kTries) < slack(thin_r));
-            const auto straight = drawn(ThinGlass{eta}, wo, {}, 0x1.fffffep-1f);
+            const auto straight = LobeProbe(ThinGlass{eta}, wo).sample({}, 0x1.fffffep-1f);
             if (f < 1) CHECK(straight->wi == -wo);
         }
     }
@@ -159,11 +158,12 @@ TEST_CASE("smooth lobes: reflected and transmitted shares come as often as they 
 TEST_CASE("smooth reflection: the weight is Fresnel's reflectance") {
     for (const float z : {1.0f, 0.5f, 0.1f, 0.01f}) {
         const Vec3f wo{safe_sqrt(1 - z * z), 0, z};
-        const auto dielectric = drawn(SmoothReflection<DielectricFresnel>{{1.5f}}, wo, {}, 0);
+        const auto dielectric =
+            LobeProbe(SmoothReflection<DielectricFresnel>{{1.5f}}, wo).sample({}, 0);
         CHECK(dielectric->weight.x ==
               doctest::Approx(fresnel_double(static_cast<double>(z), 1.5)).epsilon(1e-5));
         const auto mirror =
-            drawn(SmoothReflection<MetalFresnel>{{Color(1.0f), Color(1.0f)}}, wo, {}, 0);
+            LobeProbe(SmoothReflection<MetalFresnel>{{Color(1.0f), Color(1.0f)}}, wo).sample({}, 0);
         CHECK(mirror->weight == Color(1.0f));
     }
 }

@@ -3,8 +3,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include "materials/surface/openpbr.h"
-#include "tests/support/drawn.h"
+#include "tests/support/lobe_probe.h"
 #include "tests/support/parallel_cases.h"
 #include "tests/support/sphere_chi_square.h"
 
@@ -23,19 +22,13 @@ Vec3f at_degrees(double degrees, double azimuth = 0.4) {
 
 struct LobeCase {
     std::string name;
-    LobeList lobes;
-    Vec3f wo;
+    LobeProbe lobes;
     std::uint64_t seed = 0;
 };
 
 template <class Model>
 LobeCase one_lobe(std::string name, const Model& model, double degrees) {
-    LobeCase c;
-    c.name = fmt::format("{} wo {} deg", name, degrees);
-    c.wo = at_degrees(degrees);
-    c.lobes.push(model, Color(1.0f));
-    c.lobes.prepare(c.wo);
-    return c;
+    return {fmt::format("{} wo {} deg", name, degrees), LobeProbe(model, at_degrees(degrees))};
 }
 
 std::vector<LobeCase> numbered(std::vector<LobeCase> cases) {
@@ -48,11 +41,11 @@ constexpr double kAngles[] = {0, 30, 60, 80, 89};
 std::string chi_square_failure(const LobeCase& c, double level) {
     const auto sample = [&](Random& n) -> std::optional<Vec3d> {
         const Vec2f u = n.pair();
-        const auto s = drawn(c.lobes, c.wo, u, n.unit());
+        const auto s = c.lobes.sample(u, n.unit());
         if (!s || s->delta) return std::nullopt;
         return Vec3d(s->wi);
     };
-    const auto pdf = [&](Vec3d w) { return static_cast<double>(c.lobes.eval(c.wo, Vec3f(w)).pdf); };
+    const auto pdf = [&](Vec3d w) { return static_cast<double>(c.lobes.eval(Vec3f(w)).pdf); };
     SphereTest test;
     test.charts = {{{0, 0, 1}, true}, {{0, 0, -1}, true}};
     test.seed = c.seed;
@@ -81,12 +74,12 @@ std::string weight_failure(const LobeCase& c, double tolerance) {
     int made = 0;
     for (int i = 0; i < 4000; ++i) {
         const Vec2f u = n.pair();
-        const auto s = drawn(c.lobes, c.wo, u, n.unit());
+        const auto s = c.lobes.sample(u, n.unit());
         if (!s || s->delta) continue;
         ++made;
         if (std::fabs(length2(Vec3d(s->wi)) - 1) > 1e-5)
             return fmt::format("{}: wi has length {}", c.name, length(Vec3d(s->wi)));
-        const LobeEval e = c.lobes.eval(c.wo, s->wi);
+        const LobeEval e = c.lobes.eval(s->wi);
         if (!(e.pdf > 0.0f))
             return fmt::format("{}: a direction was made that has no density", c.name);
         const double pdf = static_cast<double>(e.pdf) / static_cast<double>(s->pdf);
@@ -163,8 +156,7 @@ std::vector<LobeCase> surface_cases() {
                     c.name =
                         fmt::format("openpbr metalness {} transmission {} roughness {} wo {} deg",
                                     metalness, transmission, roughness, angle);
-                    c.wo = at_degrees(angle);
-                    c.lobes = openpbr_lobes(p, c.wo, true);
+                    c.lobes = LobeProbe(p, at_degrees(angle), true);
                     if (c.lobes.has_extended_part()) cases.push_back(c);
                 }
             }

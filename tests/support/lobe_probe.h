@@ -1,0 +1,55 @@
+#pragma once
+// One surface point's lobes as values, for tests: lane 0 of a block. Not for several threads at
+// once.
+
+#include <optional>
+
+#include "materials/surface/openpbr.h"
+
+namespace tessera {
+
+struct Drawn {
+    Vec3f wi;
+    Color weight;
+    float pdf = 0, eta = 1;
+    bool delta = false;
+};
+
+class LobeProbe {
+public:
+    LobeProbe() = default;
+    /// A lobe alone, of weight one.
+    template <class Model>
+    LobeProbe(const Model& model, Vec3f wo) {
+        lobes_.wo.set(0, wo);
+        lobes_.push(0, model, Color(1.0f));
+        lobes_.prepare();
+    }
+    LobeProbe(const SurfaceParams& p, Vec3f wo, bool front) {
+        lobes_.wo.set(0, wo);
+        openpbr_lobes(p, front, 0, lobes_);
+        lobes_.prepare();
+    }
+
+    bool has_extended_part() const { return (lobes_.extended() & 1u) != 0; }
+    Vec3f wo() const { return lobes_.wo[0]; }
+    LobeEval eval(Vec3f wi) const {
+        Vec3Lanes to;
+        to.set(0, wi);
+        lobes_.eval(1u, to);
+        return {lobes_.f(0), lobes_.pdf(0)};
+    }
+    std::optional<Drawn> sample(Vec2f u, float choice) const {
+        SamplePairs pairs{};
+        pairs.x[0] = u.x, pairs.y[0] = u.y;
+        const float choices[kLanes] = {choice};
+        LobeSamples s;
+        if (lobes_.sample(1u, pairs, choices, s) == 0) return std::nullopt;
+        return Drawn{s.wi[0], s.weight[0], s.pdf[0], s.eta[0], !(s.pdf[0] > 0.0f)};
+    }
+
+private:
+    mutable AllLobes lobes_;  // evaluation writes its results into the block
+};
+
+}  // namespace tessera
