@@ -224,8 +224,7 @@ private:
     template <class Model>
     [[gnu::flatten]] void set_directions(LaneMask lanes, const LobesOfKind<Model>& kind,
                                          const SamplePairs& u, LobeSamples& out) noexcept {
-        LaneFlags mine;
-        for (int i = 0; i < kLanes; ++i) mine.is[i] = (lanes >> i) & 1u;
+        const LaneFlags mine = flags_of(lanes);
         all_or_few(lanes, [&](int i) {
             const Model lobe = kind.model.get(i);
             const LobeDirection to = lobe.direction(wo[i], u.at(i), rest_[i]);
@@ -241,12 +240,14 @@ private:
     LaneMask weigh(LaneMask lanes, LobeSamples& out) noexcept {
         if (lanes == 0) return 0;
         eval(lanes, out.wi);
-        LaneFlags there{};
-        all_or_few(lanes, [&](int i) { there.is[i] = pdf_[i] > 0.0f; });
-        each(lanes, [&](int i) {
-            out.weight.set(i, f_[i] / pdf_[i]);
-            out.pdf[i] = pdf_[i];
-        });
+        LaneFlags there;
+        const LaneFlags mine = flags_of(lanes);
+        for (int i = 0; i < kLanes; ++i) {
+            const bool here = mine.is[i] != 0;
+            there.is[i] = pdf_[i] > 0.0f;
+            out.weight.set(i, pick(here, f_[i] / pdf_[i], out.weight[i]));
+            out.pdf[i] = pick(here, pdf_[i], out.pdf[i]);
+        }
         return there.mask();
     }
 

@@ -114,32 +114,33 @@ ShaderProgram::ShaderProgram(const MaterialDesc& desc) : m_(folded(desc)) {
     facts_.tangent = m_.geometry_normal >= 0 || !zero(m_.specular_roughness_anisotropy);
     facts_.vertex_color = m_.use_vertex_color;
     const auto value = [](const FloatInput& f) { return f.value; };
-    constant_.base_color = color_of(m_.base_color.value) * value(m_.base_weight);
-    constant_.base_metalness = value(m_.base_metalness);
-    constant_.specular_weight = value(m_.specular_weight);
-    constant_.specular_color = color_of(m_.specular_color.value);
-    constant_.specular_roughness = value(m_.specular_roughness);
-    constant_.specular_roughness_anisotropy = value(m_.specular_roughness_anisotropy);
-    constant_.specular_ior = m_.specular_ior;
-    constant_.transmission_weight = value(m_.transmission_weight);
-    constant_.transmission_color = color_of(m_.transmission_color.value);
-    constant_.thin_walled = m_.geometry_thin_walled;
+    SurfaceParams p;
+    p.base_color = color_of(m_.base_color.value) * value(m_.base_weight);
+    p.base_metalness = value(m_.base_metalness);
+    p.specular_weight = value(m_.specular_weight);
+    p.specular_color = color_of(m_.specular_color.value);
+    p.specular_roughness = value(m_.specular_roughness);
+    p.specular_roughness_anisotropy = value(m_.specular_roughness_anisotropy);
+    p.specular_ior = m_.specular_ior;
+    p.transmission_weight = value(m_.transmission_weight);
+    p.transmission_color = color_of(m_.transmission_color.value);
+    p.thin_walled = m_.geometry_thin_walled;
     const bool same_boundary = m_.specular_roughness.texture < 0 &&
                                m_.specular_roughness_anisotropy.texture < 0 &&
                                m_.specular_weight.texture < 0;
     if (same_boundary && facts_.specular && !one(m_.base_metalness) &&
         !one(m_.transmission_weight)) {
-        const Ggx ggx =
-            openpbr_ggx(constant_.specular_roughness, constant_.specular_roughness_anisotropy);
-        boundary_ = std::make_shared<ReflectionAlbedoCurve>(std::sqrt(ggx.ax * ggx.ay),
-                                                            openpbr_boundary_eta(constant_));
-        constant_.boundary = boundary_.get();
+        const Surface s(p);
+        boundary_ =
+            std::make_shared<ReflectionAlbedoCurve>(std::sqrt(s.ggx.ax * s.ggx.ay), s.boundary_eta);
+        p.boundary = boundary_.get();
     }
+    constant_ = Surface(p);
 }
 
-SurfaceParams ShaderProgram::surface(const ShadeInput& in,
-                                     const TextureStore* store) const noexcept {
-    SurfaceParams p = constant_;
+SurfaceParams ShaderProgram::varied(const ShadeInput& in,
+                                    const TextureStore* store) const noexcept {
+    SurfaceParams p = constant_.p;
     p.base_color = base_color(in, store);
     if (facts_.textured) {
         if (m_.base_metalness.texture >= 0)
@@ -167,7 +168,7 @@ SurfaceParams ShaderProgram::surface(const ShadeInput& in,
 }
 
 Color ShaderProgram::base_color(const ShadeInput& in, const TextureStore* store) const noexcept {
-    Color c = constant_.base_color;
+    Color c = constant_.p.base_color;
     if (m_.base_color.texture >= 0 || m_.base_weight.texture >= 0) {
         c = read(m_.base_color, in, store) * read(m_.base_weight, in, store);
         c = min(max(c, Color(0.0f)), Color(1.0f));

@@ -42,8 +42,15 @@ public:
 
     const ProgramFacts& facts() const noexcept { return facts_; }
 
-    /// The surface's parameters at a point. store may be null if nothing is textured.
-    SurfaceParams surface(const ShadeInput& in, const TextureStore* store) const noexcept;
+    /// Calls use(const Surface&) with the surface at a point. store may be null if nothing is
+    /// textured.
+    template <class Use>
+    void with_surface(const ShadeInput& in, const TextureStore* store, Use use) const noexcept {
+        if (facts_.textured || facts_.vertex_color)
+            use(Surface(varied(in, store)));
+        else
+            use(constant_);
+    }
     /// surface().base_color alone: all that a Lambertian surface has.
     Color base_color(const ShadeInput& in, const TextureStore* store) const noexcept;
     /// Radiance leaving the surface by itself.
@@ -62,8 +69,10 @@ public:
     std::optional<Vec3f> normal(const ShadeInput& in, const TextureStore* store) const noexcept;
 
 private:
+    SurfaceParams varied(const ShadeInput& in, const TextureStore* store) const noexcept;
+
     MaterialDesc m_;
-    SurfaceParams constant_;  // what does not vary
+    Surface constant_{SurfaceParams()};  // what does not vary
     ProgramFacts facts_;
     std::shared_ptr<const ReflectionAlbedoCurve>
         boundary_;  // shared: programs are copied into place

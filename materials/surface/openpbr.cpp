@@ -13,10 +13,11 @@ Ggx openpbr_ggx(float roughness, float anisotropy) {
     return {std::max(ax, kMinAlpha), std::max(a * ax, kMinAlpha)};
 }
 
-float openpbr_boundary_eta(const SurfaceParams& p) {
-    // Opaque bases look the same from both sides, so their boundary is always entered.
-    const float ior = modulated_ior(p.specular_ior, p.specular_weight);
-    return std::max(ior, 1.0f / ior);
-}
+// Opaque bases look the same from both sides, so their boundary is always entered.
+Surface::Surface(const SurfaceParams& params)
+    : p(params),
+      ggx(openpbr_ggx(p.specular_roughness, p.specular_roughness_anisotropy)),
+      ior(modulated_ior(p.specular_ior, p.specular_weight)),
+      boundary_eta(std::max(ior, 1.0f / ior)) {}
 
 }  // namespace tessera

@@ -23,16 +23,23 @@ struct SurfaceParams {
         nullptr;  // of the dielectric boundary if it is the same everywhere
 };
 
-/// Index of the opaque base's boundary, always entered from outside: at least 1.
-float openpbr_boundary_eta(const SurfaceParams& p);
-
 /// Roughness to the two GGX alphas. OpenPBR 1.1, "Microfacet model".
 Ggx openpbr_ggx(float roughness, float anisotropy);
+
+/// Parameters with what follows from them whatever they are seen from.
+struct Surface {
+    SurfaceParams p;
+    Ggx ggx;
+    float ior = 1;           // specular_weight included
+    float boundary_eta = 1;  // of the opaque base's boundary, always entered from outside: >= 1
+
+    explicit Surface(const SurfaceParams& params);
+};
 
 /// Pushes the lobes of a lane of `lobes`, seen from lobes.wo[lane] (z > 0); front: that is on the
 /// outside. Kinds that the block does not have are taken as not needed.
 template <class Lobes>
-void openpbr_lobes(const SurfaceParams& p, bool front, int lane, Lobes& lobes) noexcept;
+void openpbr_lobes(const Surface& surface, bool front, int lane, Lobes& lobes) noexcept;
 
 // A boundary is looked through undisturbed where the two indices agree; the half vector is
 // undefined there.
@@ -53,8 +60,10 @@ void push_reflection(const Ggx& ggx, const Fresnel& fresnel, Color weight, Color
 }
 
 template <class Lobes>
-void push_transmission(const SurfaceParams& p, const Ggx& ggx, float ior, bool front, Color weight,
-                       int lane, Lobes& lobes) {
+void push_transmission(const Surface& surface, bool front, Color weight, int lane, Lobes& lobes) {
+    const SurfaceParams& p = surface.p;
+    const Ggx& ggx = surface.ggx;
+    const float ior = surface.ior;
     if (p.thin_walled) {
         lobes.push(lane, ThinGlass{ior, p.specular_color, p.transmission_color}, weight);
         return;
@@ -70,15 +79,15 @@ void push_transmission(const SurfaceParams& p, const Ggx& ggx, float ior, bool f
 }  // namespace openpbr
 
 template <class Lobes>
-void openpbr_lobes(const SurfaceParams& p, bool front, int lane, Lobes& lobes) noexcept {
+void openpbr_lobes(const Surface& surface, bool front, int lane, Lobes& lobes) noexcept {
+    const SurfaceParams& p = surface.p;
+    const Ggx& ggx = surface.ggx;
     const float metal = p.base_metalness;
     const float clear = (1.0f - metal) * p.transmission_weight;
     const float opaque = (1.0f - metal) * (1.0f - p.transmission_weight);
-    const float ior = modulated_ior(p.specular_ior, p.specular_weight);
-    const Ggx ggx = openpbr_ggx(p.specular_roughness, p.specular_roughness_anisotropy);
     const float cos_o = lobes.wo.z[lane];
     if (opaque > 0.0f) {
-        const float eta = openpbr_boundary_eta(p);
+        const float eta = surface.boundary_eta;
         float reflected = 0.0f;
         if (eta > 1.0f + kSameIndex) {
             const float alpha = std::sqrt(ggx.ax * ggx.ay);
@@ -98,7 +107,7 @@ void openpbr_lobes(const SurfaceParams& p, bool front, int lane, Lobes& lobes) n
                                  fresnel(cos_o), lane, lobes);
     }
     if constexpr (Lobes::template kHas<RoughGlass>) {
-        if (clear > 0.0f) openpbr::push_transmission(p, ggx, ior, front, Color(clear), lane, lobes);
+        if (clear > 0.0f) openpbr::push_transmission(surface, front, Color(clear), lane, lobes);
     }
 }
 

@@ -105,4 +105,10 @@ struct LaneFlags {
     }
 };
 
+inline LaneFlags flags_of(LaneMask lanes) {
+    LaneFlags flags;
+    for (int i = 0; i < kLanes; ++i) flags.is[i] = (lanes >> i) & 1u;
+    return flags;
+}
+
 }  // namespace tessera

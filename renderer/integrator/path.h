@@ -77,7 +77,7 @@ private:
         each(job_.lanes, [&](int i) {
             out_[i] = PathSample{};
             ray_[i] = packet_.ray.get(i);
-            throughput_[i] = Color(1.0f);
+            throughput_.set(i, Color(1.0f));
             bsdf_pdf_[i] = 0.0f;
             eta_scale_[i] = 1.0f;
             cone_width_[i] = camera.cone_width();
@@ -131,9 +131,9 @@ private:
     // ---- escape: what the rays that hit nothing see
     void escape(std::uint32_t depth) noexcept {
         if (escaped_ == 0) return;
-        Vec3f d[kLanes];
+        Vec3Lanes d;
         Color seen[kLanes];
-        for (int i = 0; i < kLanes; ++i) d[i] = ray_[i].d;
+        each(escaped_, [&](int i) { d.set(i, ray_[i].d); });
         scene_.lights().escaped(escaped_, d, bsdf_pdf_, depth == 0, seen);
         each(escaped_, [&](int i) {
             out_[i].radiance += throughput_[i] * seen[i];
@@ -249,8 +249,13 @@ private:
         lanes = scene_.lights().sample(lanes, from_.array(), choice_u_.x, light_u_, light_);
         lanes &= aim_at_lights();
         if (lanes == 0) return;
+        each(lanes, [&](int i) { look_at_emitter(i); });
         lobes_.eval(lanes, wi_);
-        each(lanes, [&](int i) { weigh_light(i); });
+        lanes &= weigh_lights();
+        each(lanes, [&](int i) {
+            if (!traceable(shadow_o_[i], shadow_d_[i])) return invalid(InvalidCause::shadow_ray, i);
+            shadow_lanes_ |= 1u << i;
+        });
     }
 
     // Shadow rays, and the lights as the surfaces' frames see them. Returns the lanes on whose side
@@ -273,22 +278,27 @@ private:
         return faced.mask();
     }
 
-    void weigh_light(int i) noexcept {
-        const Color f = lobes_.f(i);
-        if (!(max_component(f) > 0.0f)) return;
-        Color radiance = light_.radiance[i];
-        if (light_.material[i] >= 0) {
-            ShadeInput in;
-            in.uv = light_.uv[i];
-            radiance = scene_.program(light_.material[i]).visible_emission(in, scene_.textures());
+    // An emissive mesh says by its material what it sends.
+    void look_at_emitter(int i) noexcept {
+        if (light_.material[i] < 0) return;
+        ShadeInput in;
+        in.uv = light_.uv[i];
+        light_.radiance.set(
+            i, scene_.program(light_.material[i]).visible_emission(in, scene_.textures()));
+    }
+
+    // What the lights give if nothing is in the way. Returns the lanes that it is worth a ray for.
+    LaneMask weigh_lights() noexcept {
+        LaneFlags lit;
+        for (int i = 0; i < kLanes; ++i) {
+            const float pdf = light_.pdf[i], ratio = lobes_.pdf(i) / pdf;
+            const float mis = 1.0f / (1.0f + ratio * ratio);
+            const float weight = pick(light_.delta[i] != 0, 1.0f, mis);
+            const Color c = throughput_[i] * lobes_.f(i) * light_.radiance[i] * (weight / pdf);
+            pending_.set(i, c);
+            lit.is[i] = max_component(c) > 0.0f;
         }
-        const float pdf = light_.pdf[i];
-        const float weight = light_.delta[i] ? 1.0f : mis_power(pdf, lobes_.pdf(i));
-        const Color c = throughput_[i] * f * radiance * (weight / pdf);
-        if (!(max_component(c) > 0.0f)) return;
-        if (!traceable(shadow_o_[i], shadow_d_[i])) return invalid(InvalidCause::shadow_ray, i);
-        pending_[i] = c;
-        shadow_lanes_ |= 1u << i;
+        return lit.mask();
     }
 
     // ---- occlude: the blocked contributions are dropped, the others added
@@ -318,32 +328,55 @@ private:
     // ---- scatter: the paths go on, or stop
     void scatter(std::uint32_t depth) noexcept {
         alive_ = lobes_.sample(alive_, bsdf_u_, choice_u_.y, scattered_);
-        LaneFlags leaves;
-        for (int i = 0; i < kLanes; ++i) {
-            const Vec3f local = scattered_.wi[i], wi = frame_.shading(i).to_world(local);
-            next_o_.set(i, offset_origin(p_[i], p_error_[i], frame_.ng[i], wi));
-            next_d_.set(i, wi);
-            leaves.is[i] = same_side(wi, local, frame_.ng[i]);
-        }
-        alive_ &= leaves.mask();
+        weigh_paths();
+        alive_ &= leave_surfaces();
+        if (depth >= static_cast<std::uint32_t>(settings_.min_depth)) alive_ &= play_roulette();
         each(alive_, [&](int i) {
             if (!carry_on(i, depth)) stop(i);
         });
     }
 
-    bool carry_on(int i, std::uint32_t depth) noexcept {
+    void weigh_paths() noexcept {
         const LobeSamples& b = scattered_;
-        throughput_[i] *= b.weight[i];
+        for (int i = 0; i < kLanes; ++i) {
+            throughput_.set(i, throughput_[i] * b.weight[i]);
+            bsdf_pdf_[i] = b.pdf[i];
+            eta_scale_[i] *= b.eta[i] * b.eta[i];
+            cone_spread_[i] = std::max(cone_spread_[i], b.spread[i]);
+        }
+    }
+
+    // The next rays. Returns the lanes whose ray leaves on the side that the lobe meant, with
+    // something to carry.
+    LaneMask leave_surfaces() noexcept {
+        LaneFlags leaves;
+        for (int i = 0; i < kLanes; ++i) {
+            const Vec3f local = scattered_.wi[i], wi = frame_.shading(i).to_world(local);
+            next_o_.set(i, offset_origin(p_[i], p_error_[i], frame_.ng[i], wi));
+            next_d_.set(i, wi);
+            leaves.is[i] =
+                same_side(wi, local, frame_.ng[i]) & (max_component(throughput_[i]) > 0.0f);
+        }
+        return leaves.mask();
+    }
+
+    LaneMask play_roulette() noexcept {
+        LaneFlags survives;
+        for (int i = 0; i < kLanes; ++i) {
+            const float chance = std::min(max_component(throughput_[i]) * eta_scale_[i], 1.0f);
+            survives.is[i] = roulette_u_[i] < chance;
+            throughput_.set(i, throughput_[i] * (1.0f / chance));
+        }
+        return survives.mask();
+    }
+
+    bool carry_on(int i, std::uint32_t depth) noexcept {
         PathDepth& at = depth_[i];
         // Behind a mirror or clear glass the albedo is that of what is seen there.
-        if (b.pdf[i] > 0.0f) at.layers_done = true;
+        if (bsdf_pdf_[i] > 0.0f) at.layers_done = true;
         if (!at.layers_done) out_[i].albedo = Color(0.0f);
-        bsdf_pdf_[i] = b.pdf[i];
-        eta_scale_[i] *= b.eta[i] * b.eta[i];
-        if (!(max_component(throughput_[i]) > 0.0f)) return false;
-
         at.last = depth + 1 > static_cast<std::uint32_t>(settings_.max_depth);
-        switch (static_cast<LobeClass>(b.cls[i])) {
+        switch (static_cast<LobeClass>(scattered_.cls[i])) {
             case LobeClass::diffuse:
                 at.last |= ++at.diffuse > settings_.max_diffuse_depth;
                 break;
@@ -355,15 +388,7 @@ private:
                 break;
         }
         if (at.last && !scene_.emission_can_be_hit()) return false;
-        if (depth >= static_cast<std::uint32_t>(settings_.min_depth)) {
-            const float survive = std::min(max_component(throughput_[i]) * eta_scale_[i], 1.0f);
-            if (survive < 1.0f) {
-                if (roulette_u_[i] >= survive) return false;
-                throughput_[i] *= 1.0f / survive;
-            }
-        }
         ray_[i] = Ray{next_o_[i], next_d_[i]};
-        cone_spread_[i] = std::max(cone_spread_[i], b.spread[i]);
         if (!traceable(ray_[i].o, ray_[i].d)) {
             invalid(InvalidCause::bounce_ray, i);
             return false;
@@ -418,7 +443,7 @@ private:
 
     // The paths.
     Lanes<Ray> ray_;
-    Lanes<Color> throughput_;
+    Vec3Lanes throughput_;
     Lanes<LightReference> from_;  // the vertex that sent the ray: where its pdf was taken
     float bsdf_pdf_[kLanes];      // of its direction; 0: light sampling could not have made it
     float cone_width_[kLanes], cone_spread_[kLanes];
@@ -437,7 +462,7 @@ private:
     Vec3Lanes wi_;  // local, of the light
     Vec3Lanes shadow_o_, shadow_d_;
     float shadow_t_max_[kLanes];
-    Lanes<Color> pending_;  // light that waits for its shadow ray
+    Vec3Lanes pending_;  // light that waits for its shadow ray
     LobeSamples scattered_;
     Vec3Lanes next_o_, next_d_;
     HitPacket packet_;

@@ -85,8 +85,11 @@ template <Features F>
 void push_lobes(const ShaderProgram& program, const ShadeInput& in, const TextureStore* textures,
                 bool front, int lane, Lobes<F>& lobes) {
     if constexpr (F.specular || F.transmission) {
-        if (program.facts().specular)
-            return openpbr_lobes(program.surface(in, textures), front, lane, lobes);
+        if (program.facts().specular) {
+            return program.with_surface(in, textures, [&](const Surface& surface) {
+                openpbr_lobes(surface, front, lane, lobes);
+            });
+        }
     }
     lobes.push(lane, DiffuseLobe{}, program.base_color(in, textures));
 }

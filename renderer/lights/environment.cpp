@@ -64,7 +64,7 @@ EnvironmentLight::Look EnvironmentLight::look(Vec3f d) const {
     return {texel(uv), density(uv, sine_of(d))};
 }
 
-void EnvironmentLight::look(LaneMask lanes, const Vec3f (&d)[kLanes], Look (&out)[kLanes]) const {
+void EnvironmentLight::look(LaneMask lanes, const Vec3Lanes& d, Look (&out)[kLanes]) const {
     SamplePairs uv;
     float sine[kLanes];
     if (width > 0) {
@@ -123,7 +123,7 @@ LaneMask EnvironmentLight::sample(LaneMask lanes, const SamplePairs& u, LightSam
         const int i = std::countr_zero(m);
         out.wi.set(i, wi[i]);
         out.pdf[i] = density[i];
-        out.radiance[i] = texel(uv.at(i));
+        out.radiance.set(i, texel(uv.at(i)));
         out.delta[i] = 0;
         out.infinite[i] = 1;
         out.material[i] = -1;

@@ -158,7 +158,7 @@ void LightSamples::set(int lane, const LightSample& s) {
     p.set(lane, s.p);
     p_error.set(lane, s.p_error);
     n.set(lane, s.n);
-    radiance[lane] = s.radiance;
+    radiance.set(lane, s.radiance);
     pdf[lane] = s.pdf;
     delta[lane] = s.delta;
     infinite[lane] = s.infinite;

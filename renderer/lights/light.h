@@ -34,7 +34,7 @@ struct LightSample {
 /// Those of a block.
 struct LightSamples {
     Vec3Lanes wi, p, p_error, n;
-    Lanes<Color> radiance;
+    Vec3Lanes radiance;
     float pdf[kLanes];
     std::uint32_t delta[kLanes], infinite[kLanes];
     std::int32_t material[kLanes];
@@ -133,7 +133,7 @@ struct EnvironmentLight {
     /// Both ways for sixteen lanes at once, with sample_light's and look's bits. sample returns the
     /// lanes that got a sample.
     LaneMask sample(LaneMask lanes, const SamplePairs& u, LightSamples& out) const;
-    void look(LaneMask lanes, const Vec3f (&d)[kLanes], Look (&out)[kLanes]) const;
+    void look(LaneMask lanes, const Vec3Lanes& d, Look (&out)[kLanes]) const;
     Vec2f to_uv(Vec3f d) const;
     Vec3f to_direction(Vec2f uv) const;
     Color texel(Vec2f uv) const;  // bilinear, scaled

@@ -20,10 +20,19 @@ double mean_of(Color c) {
 // nothing of distance.
 constexpr double kFloor = 0.1;
 
+// By the chord: 1 - cos is exact for small angles so, where the dot product is not.
+inline bool is_towards(const DistantLight& l, Vec3f d) {
+    return 0.5f * length2(d - l.to_light) <= l.one_minus_cos;
+}
+
+LaneMask lanes_towards(const DistantLight& l, const Vec3Lanes& d) {
+    LaneFlags flags;
+    for (int i = 0; i < kLanes; ++i) flags.is[i] = is_towards(l, d[i]);
+    return flags.mask();
+}
+
 EnvironmentLight::Look seen_along(const DistantLight& l, Vec3f d) {
-    // 1 - cos by the chord: exact for small angles, where the dot product is not.
-    const float one_minus_cos = 0.5f * length2(d - l.to_light);
-    if (one_minus_cos > l.one_minus_cos) return {};
+    if (!is_towards(l, d)) return {};
     return {l.radiance, 1.0f / (2.0f * kPi * l.one_minus_cos)};
 }
 
@@ -121,24 +130,26 @@ float LightSet::pdf(int index, const LightReference& ref, Vec3f wi, Vec3f p, Vec
     return choice > 0.0f ? choice * light_pdf(lights_[index], ref, wi, p, n, material) : 0.0f;
 }
 
-void LightSet::escaped(LaneMask lanes, const Vec3f (&d)[kLanes], const float (&bsdf_pdf)[kLanes],
+void LightSet::escaped(LaneMask lanes, const Vec3Lanes& d, const float (&bsdf_pdf)[kLanes],
                        bool camera, Color (&out)[kLanes]) const noexcept {
     for (LaneMask m = lanes; m != 0; m &= m - 1) out[std::countr_zero(m)] = Color(0.0f);
     EnvironmentLight::Look seen[kLanes];
     for (int light : infinite_) {
+        LaneMask seeing = lanes;
         if (const auto* sky = std::get_if<EnvironmentLight>(&lights_[light])) {
             if (camera && !sky->camera_visible) continue;
             sky->look(lanes, d, seen);
         } else {
             const auto& sun = std::get<DistantLight>(lights_[light]);
             if (camera && !sun.camera_visible) continue;
-            for (LaneMask m = lanes; m != 0; m &= m - 1) {
+            seeing &= lanes_towards(sun, d);
+            for (LaneMask m = seeing; m != 0; m &= m - 1) {
                 const int i = std::countr_zero(m);
                 seen[i] = seen_along(sun, d[i]);
             }
         }
         const float choice = probability(light);
-        for (LaneMask m = lanes; m != 0; m &= m - 1) {
+        for (LaneMask m = seeing; m != 0; m &= m - 1) {
             const int i = std::countr_zero(m);
             const float weight =
                 bsdf_pdf[i] > 0.0f ? mis_power(bsdf_pdf[i], choice * seen[i].pdf) : 1.0f;

@@ -34,8 +34,8 @@ public:
     /// Light from infinity along d, for rays that hit nothing. bsdf_pdf: density that made the ray,
     /// 0 if light sampling could not have made it (camera, delta): the result is weighted by the
     /// power heuristic.
-    void escaped(LaneMask lanes, const Vec3f (&d)[kLanes], const float (&bsdf_pdf)[kLanes],
-                 bool camera, Color (&out)[kLanes]) const noexcept;
+    void escaped(LaneMask lanes, const Vec3Lanes& d, const float (&bsdf_pdf)[kLanes], bool camera,
+                 Color (&out)[kLanes]) const noexcept;
     /// One ray, unweighted, for the ray tree.
     Color background(Vec3f d, bool camera) const noexcept;
 

@@ -25,14 +25,14 @@ BENCHMARK(sobol_pairs);
 
 // A glossy plastic at sixteen points: two lobes made, evaluated and sampled.
 void plastic_sample(benchmark::State& state) {
-    const SurfaceParams p;
+    const Surface plastic{SurfaceParams()};
     OpaqueLobes lobes;
     std::uint32_t seeds[kLanes] = {7}, index = 0;
     for (auto _ : state) {
         lobes.clear();
         for (int i = 0; i < kLanes; ++i) {
             lobes.wo.set(i, normalize(Vec3f{0.3f, 0.1f, 0.8f}));
-            openpbr_lobes(p, true, i, lobes);
+            openpbr_lobes(plastic, true, i, lobes);
         }
         lobes.prepare();
         SamplePairs u, c;

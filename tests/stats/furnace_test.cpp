@@ -80,8 +80,8 @@ TEST_CASE("furnace: no surface of openpbr gives back more light than it gets") {
         const bool layered = c.p.base_metalness < 1.0f && c.p.transmission_weight < 1.0f;
         SurfaceParams p = c.p;
         const double by_table = albedo_of(LobeProbe(p, seen_at(c.cosine), c.front));
-        const Ggx ggx = openpbr_ggx(p.specular_roughness, p.specular_roughness_anisotropy);
-        const ReflectionAlbedoCurve curve(std::sqrt(ggx.ax * ggx.ay), openpbr_boundary_eta(p));
+        const Surface s(p);
+        const ReflectionAlbedoCurve curve(std::sqrt(s.ggx.ax * s.ggx.ay), s.boundary_eta);
         p.boundary = &curve;
         const double by_curve = albedo_of(LobeProbe(p, seen_at(c.cosine), c.front));
         return by_table <= 1 + (layered ? 0.006 : 0.001) &&

@@ -331,8 +331,8 @@ TEST_CASE("environment: sixteen look-ups are look()'s") {
     const EnvironmentLight sky = hot_pixel(32, 16, 500, 40);
     Random n(12);
     for (int i = 0; i < 1000; ++i) {
-        Vec3f d[kLanes];
-        for (Vec3f& w : d) w = Vec3f(n.direction());
+        Vec3Lanes d;
+        for (int lane = 0; lane < kLanes; ++lane) d.set(lane, Vec3f(n.direction()));
         EnvironmentLight::Look seen[kLanes];
         sky.look(0x5555u, d, seen);
         for (int lane = 0; lane < kLanes; lane += 2) {

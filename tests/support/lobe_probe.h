@@ -27,7 +27,7 @@ public:
     }
     LobeProbe(const SurfaceParams& p, Vec3f wo, bool front) {
         lobes_.wo.set(0, wo);
-        openpbr_lobes(p, front, 0, lobes_);
+        openpbr_lobes(Surface(p), front, 0, lobes_);
         lobes_.prepare();
     }
 

@@ -47,7 +47,7 @@ TEST_CASE("lobes: a lane's sample and value do not depend on the lanes asked for
         lobes.clear();
         for (int i = 0; i < kLanes; ++i) {
             lobes.wo.set(i, upper(n));
-            openpbr_lobes(any_surface(n), n.unit() < 0.7f, i, lobes);
+            openpbr_lobes(Surface(any_surface(n)), n.unit() < 0.7f, i, lobes);
             wi.set(i, Vec3f(n.direction()));
             u.x[i] = n.unit(), u.y[i] = n.unit();
             choice[i] = n.unit();
@@ -93,8 +93,8 @@ TEST_CASE("lobes: a kernel without glass gives the bits of the one that has it")
             const Vec3f wo = upper(n);
             all.wo.set(i, wo);
             opaque.wo.set(i, wo);
-            openpbr_lobes(p, true, i, all);
-            openpbr_lobes(p, true, i, opaque);
+            openpbr_lobes(Surface(p), true, i, all);
+            openpbr_lobes(Surface(p), true, i, opaque);
             u.x[i] = n.unit(), u.y[i] = n.unit();
             choice[i] = n.unit();
         }
