@@ -41,17 +41,21 @@ Vec2f EnvironmentLight::to_uv(Vec3f d) const { return uv_of(*this, d); }
 
 Vec3f EnvironmentLight::to_direction(Vec2f uv) const { return direction_of(*this, uv); }
 
-Color EnvironmentLight::texel(Vec2f uv) const {
+inline EnvironmentLight::Corners EnvironmentLight::corners(Vec2f uv) const {
     const float x = uv.x * static_cast<float>(width) - 0.5f,
                 y = uv.y * static_cast<float>(height) - 0.5f;
-    const float fx = std::floor(x), fy = std::floor(y), tx = x - fx, ty = y - fy;
-    const auto column = [&](int i) { return i < 0 ? i + width : (i >= width ? i - width : i); };
-    const int x0 = column(static_cast<int>(fx)), x1 = column(static_cast<int>(fx) + 1);
-    const int y0 = std::clamp(static_cast<int>(fy), 0, height - 1),
-              y1 = std::clamp(static_cast<int>(fy) + 1, 0, height - 1);
-    const Color* r0 = &texels[std::size_t(y0) * width];
-    const Color* r1 = &texels[std::size_t(y1) * width];
-    return lerp(lerp(r0[x0], r0[x1], tx), lerp(r1[x0], r1[x1], tx), ty) * scale;
+    const float fx = std::floor(x), fy = std::floor(y);
+    const int ix = static_cast<int>(fx), iy = static_cast<int>(fy);
+    const int x0 = ix < 0 ? ix + width : ix, x1 = ix + 1 >= width ? ix + 1 - width : ix + 1;
+    const int y0 = iy < 0 ? 0 : iy, y1 = iy + 1 >= height ? height - 1 : iy + 1;
+    return {y0 * width + x0, y0 * width + x1, y1 * width + x0, y1 * width + x1, x - fx, y - fy};
+}
+
+Color EnvironmentLight::texel(Vec2f uv) const { return blend(corners(uv)); }
+
+Color EnvironmentLight::blend(const Corners& c) const {
+    const auto at = [&](int i) { return texels[static_cast<std::size_t>(i)]; };
+    return lerp(lerp(at(c.i00), at(c.i01), c.tx), lerp(at(c.i10), at(c.i11), c.tx), c.ty) * scale;
 }
 
 float EnvironmentLight::density(Vec2f uv, float sin_theta) const {
@@ -65,20 +69,24 @@ EnvironmentLight::Look EnvironmentLight::look(Vec3f d) const {
 }
 
 void EnvironmentLight::look(LaneMask lanes, const Vec3Lanes& d, Look (&out)[kLanes]) const {
+    if (width == 0) {
+        for (LaneMask m = lanes; m != 0; m &= m - 1)
+            out[std::countr_zero(m)] = {scale, 0.25f * kInvPi};
+        return;
+    }
     SamplePairs uv;
     float sine[kLanes];
-    if (width > 0) {
-        // The arithmetic of all lanes, wanted or not: it is vectorised.
-        for (int i = 0; i < kLanes; ++i) {
-            const Vec2f at = uv_of(*this, d[i]);
-            uv.x[i] = at.x, uv.y[i] = at.y;
-            sine[i] = sine_of(d[i]);
-        }
+    CornerLanes around;
+    // The arithmetic of all lanes, wanted or not: it is vectorised.
+    for (int i = 0; i < kLanes; ++i) {
+        const Vec2f at = uv_of(*this, d[i]);
+        uv.x[i] = at.x, uv.y[i] = at.y;
+        sine[i] = sine_of(d[i]);
     }
+    for (int i = 0; i < kLanes; ++i) around.set(i, corners(uv.at(i)));
     for (LaneMask m = lanes; m != 0; m &= m - 1) {
         const int i = std::countr_zero(m);
-        out[i] = width == 0 ? Look{scale, 0.25f * kInvPi}
-                            : Look{texel(uv.at(i)), density(uv.at(i), sine[i])};
+        out[i] = {blend(around.get(i)), density(uv.at(i), sine[i])};
     }
 }
 
@@ -113,7 +121,9 @@ LaneMask EnvironmentLight::sample(LaneMask lanes, const SamplePairs& u, LightSam
     float density[kLanes];
     table.sample(u, uv, density);
     Vec3Lanes wi;
+    CornerLanes around;
     for (int i = 0; i < kLanes; ++i) {
+        around.set(i, corners(uv.at(i)));
         const Vec3f d = direction_of(*this, uv.at(i));
         wi.set(i, d);
         const float sin_theta = sine_of(d);
@@ -123,7 +133,7 @@ LaneMask EnvironmentLight::sample(LaneMask lanes, const SamplePairs& u, LightSam
         const int i = std::countr_zero(m);
         out.wi.set(i, wi[i]);
         out.pdf[i] = density[i];
-        out.radiance.set(i, texel(uv.at(i)));
+        out.radiance.set(i, blend(around.get(i)));
         out.delta[i] = 0;
         out.infinite[i] = 1;
         out.material[i] = -1;

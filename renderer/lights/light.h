@@ -138,6 +138,24 @@ struct EnvironmentLight {
     Vec3f to_direction(Vec2f uv) const;
     Color texel(Vec2f uv) const;  // bilinear, scaled
     float density(Vec2f uv, float sin_theta) const;
+
+private:
+    // The four texels around a point, and where it lies between them.
+    struct Corners {
+        std::int32_t i00, i01, i10, i11;
+        float tx, ty;
+    };
+    struct CornerLanes {
+        std::int32_t i00[kLanes], i01[kLanes], i10[kLanes], i11[kLanes];
+        float tx[kLanes], ty[kLanes];
+        void set(int i, const Corners& c) {
+            i00[i] = c.i00, i01[i] = c.i01, i10[i] = c.i10, i11[i] = c.i11;
+            tx[i] = c.tx, ty[i] = c.ty;
+        }
+        Corners get(int i) const { return {i00[i], i01[i], i10[i], i11[i], tx[i], ty[i]}; }
+    };
+    Corners corners(Vec2f uv) const;
+    Color blend(const Corners& c) const;
 };
 
 using Light = std::variant<PointLight, SpotLight, DistantLight, QuadLight, DiscLight, SphereLight,
