@@ -1,8 +1,9 @@
 #include "materials/energy.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include "materials/fresnel.h"
 #include "materials/ggx.h"
@@ -10,29 +11,11 @@
 namespace tessera {
 namespace {
 
-constexpr int kMu = 32, kAlpha = 32, kEta = 16;
-
 // The axes are bent so that cells are small where the albedo curves: near grazing, near smooth,
 // near eta = 1.
 float mu_at(float x) { return std::max(x * x, 1e-4f); }
 float alpha_at(float x) { return x * x; }
 float eta_at(float x) { return 1.0f + 3.0f * x * x * x; }
-
-struct Table {
-    std::array<float, kMu * kAlpha * kEta> values;
-    Table() {
-        for (int e = 0; e < kEta; ++e) {
-            for (int a = 0; a < kAlpha; ++a) {
-                for (int m = 0; m < kMu; ++m) {
-                    values[(e * kAlpha + a) * kMu + m] = dielectric_reflection_albedo_quadrature(
-                        mu_at(static_cast<float>(m) / (kMu - 1)),
-                        alpha_at(static_cast<float>(a) / (kAlpha - 1)),
-                        eta_at(static_cast<float>(e) / (kEta - 1)), 12);
-                }
-            }
-        }
-    }
-};
 
 struct Cell {
     int i;
@@ -45,48 +28,128 @@ Cell cell(float x, int n) {
     return {i, p - static_cast<float>(i)};
 }
 
-}  // namespace
+float unit(int i, int n) { return static_cast<float>(i) / static_cast<float>(n - 1); }
 
-float dielectric_reflection_albedo_quadrature(float cos_o, float alpha, float eta, int n) noexcept {
+/// Values over mu, alpha and eta, mu running fastest.
+class Table {
+public:
+    template <class Quadrature>
+    Table(int mus, int alphas, int etas, Quadrature value)
+        : mus_(mus), alphas_(alphas), etas_(etas) {
+        for (int e = 0; e < etas; ++e)
+            for (int a = 0; a < alphas; ++a)
+                for (int m = 0; m < mus; ++m)
+                    values_.push_back(value(mu_at(unit(m, mus)), alpha_at(unit(a, alphas)),
+                                            etas > 1 ? eta_at(unit(e, etas)) : 1.0f));
+    }
+    float operator()(float cos_o, float alpha, float eta) const {
+        const Cell m = cell(safe_sqrt(cos_o), mus_), a = cell(safe_sqrt(alpha), alphas_),
+                   e = etas_ > 1
+                           ? cell(std::cbrt(std::max(eta - 1.0f, 0.0f) * (1.0f / 3.0f)), etas_)
+                           : Cell{0, 0};
+        float sum = 0;
+        for (int corner = 0; corner < (etas_ > 1 ? 8 : 4); ++corner) {
+            const int dm = corner & 1, da = (corner >> 1) & 1, de = corner >> 2;
+            const float w = (dm ? m.t : 1 - m.t) * (da ? a.t : 1 - a.t) * (de ? e.t : 1 - e.t);
+            sum += w * values_[static_cast<std::size_t>(((e.i + de) * alphas_ + a.i + da) * mus_ +
+                                                        m.i + dm)];
+        }
+        return sum;
+    }
+
+private:
+    int mus_, alphas_, etas_;
+    std::vector<float> values_;
+};
+
+// The mean over visible normals of share(wo, h, masking of a direction), n x n of them along a
+// golden spiral: half of them, the other half is its mirror image.
+template <class Share>
+float over_normals(float cos_o, float alpha, int n, Share share) {
     const Vec3f wo{safe_sqrt(1.0f - cos_o * cos_o), 0.0f, cos_o};
     const Ggx ggx{std::max(alpha, 1e-4f), std::max(alpha, 1e-4f)};
     const float g1 = ggx.g1(wo);
+    const auto masking = [&](Vec3f wi) { return ggx.g2(wo, {wi.x, wi.y, std::fabs(wi.z)}) / g1; };
+    const auto count = static_cast<std::uint32_t>(n * n);
     double sum = 0;
-    for (int i = 0; i < n; ++i) {
-        for (int j = 0; j < n; ++j) {
-            const Vec2f u{(static_cast<float>(i) + 0.5f) / static_cast<float>(n),
-                          (static_cast<float>(j) + 0.5f) / static_cast<float>(n)};
-            const Vec3f h = ggx.sample_visible(wo, u);
-            const Vec3f wi = reflect(wo, h);
-            if (wi.z > 0.0f)
-                sum += static_cast<double>(fresnel_dielectric(clamp01(dot(wo, h)), eta) *
-                                           ggx.g2(wo, wi) / g1);
-        }
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const double golden = static_cast<double>(i) * 0.61803398874989485;
+        const auto turn = static_cast<float>(0.5 * (golden - std::floor(golden)));
+        const Vec2f u{turn, (static_cast<float>(i) + 0.5f) / static_cast<float>(count)};
+        sum += static_cast<double>(share(wo, ggx.sample_visible(wo, u), masking));
     }
-    return static_cast<float>(sum / (static_cast<double>(n) * n));
+    return static_cast<float>(sum / static_cast<double>(count));
+}
+
+}  // namespace
+
+float dielectric_reflection_albedo_quadrature(float cos_o, float alpha, float eta, int n) noexcept {
+    return over_normals(cos_o, alpha, n, [&](Vec3f wo, Vec3f h, const auto& masking) {
+        const Vec3f wi = reflect(wo, h);
+        return wi.z > 0.0f ? fresnel_dielectric(clamp01(dot(wo, h)), eta) * masking(wi) : 0.0f;
+    });
+}
+
+float mirror_albedo_quadrature(float cos_o, float alpha, int n) noexcept {
+    return over_normals(cos_o, alpha, n, [](Vec3f wo, Vec3f h, const auto& masking) {
+        const Vec3f wi = reflect(wo, h);
+        return wi.z > 0.0f ? masking(wi) : 0.0f;
+    });
+}
+
+float glass_albedo_quadrature(float cos_o, float alpha, float eta, int n) noexcept {
+    return over_normals(cos_o, alpha, n, [&](Vec3f wo, Vec3f h, const auto& masking) {
+        const float oh = clamp01(dot(wo, h));
+        const float fresnel = fresnel_dielectric(oh, eta);
+        const Vec3f r = reflect(wo, h), t = refract(wo, h, eta, refracted_cosine(oh, eta));
+        const float up = r.z > 0.0f ? fresnel * masking(r) : 0.0f;
+        const float down = fresnel < 1.0f && t.z < 0.0f ? (1.0f - fresnel) * masking(t) : 0.0f;
+        return up + down;
+    });
 }
 
 float dielectric_reflection_albedo(float cos_o, float alpha, float eta) noexcept {
-    static const Table table;
-    const Cell m = cell(safe_sqrt(cos_o), kMu), a = cell(safe_sqrt(alpha), kAlpha),
-               e = cell(std::cbrt(std::max(eta - 1.0f, 0.0f) * (1.0f / 3.0f)), kEta);
-    float sum = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-        const int dm = corner & 1, da = (corner >> 1) & 1, de = corner >> 2;
-        const float w = (dm ? m.t : 1 - m.t) * (da ? a.t : 1 - a.t) * (de ? e.t : 1 - e.t);
-        sum += w * table.values[((e.i + de) * kAlpha + a.i + da) * kMu + m.i + dm];
-    }
-    return sum;
+    static const Table table(32, 32, 16, [](float mu, float a, float e) {
+        return dielectric_reflection_albedo_quadrature(mu, a, e, 12);
+    });
+    return table(cos_o, alpha, eta);
 }
 
-ReflectionAlbedoCurve::ReflectionAlbedoCurve(float alpha, float eta) {
-    for (int i = 0; i < kCells; ++i) {
-        const float mu = mu_at(static_cast<float>(i) / (kCells - 1));
-        values_[i] = dielectric_reflection_albedo_quadrature(mu, alpha, eta, 24);
-    }
+float mirror_albedo(float cos_o, float alpha) noexcept {
+    static const Table table(
+        32, 32, 1, [](float mu, float a, float) { return mirror_albedo_quadrature(mu, a, 32); });
+    return table(cos_o, alpha, 1);
 }
 
-float ReflectionAlbedoCurve::operator()(float cos_o) const noexcept {
+float glass_albedo(float cos_o, float alpha, float eta) noexcept {
+    static const Table into(40, 24, 16, [](float mu, float a, float e) {
+        return glass_albedo_quadrature(mu, a, e, 16);
+    });
+    static const Table out(40, 24, 16, [](float mu, float a, float e) {
+        return glass_albedo_quadrature(mu, a, 1.0f / e, 16);
+    });
+    return eta >= 1.0f ? into(cos_o, alpha, eta) : out(cos_o, alpha, 1.0f / eta);
+}
+
+template <class Quadrature>
+AlbedoCurve::AlbedoCurve(Quadrature quadrature) {
+    for (int i = 0; i < kCells; ++i) values_[i] = quadrature(mu_at(unit(i, kCells)));
+}
+
+AlbedoCurve AlbedoCurve::dielectric(float alpha, float eta) {
+    return AlbedoCurve(
+        [&](float mu) { return dielectric_reflection_albedo_quadrature(mu, alpha, eta, 32); });
+}
+
+AlbedoCurve AlbedoCurve::mirror(float alpha) {
+    return AlbedoCurve([&](float mu) { return mirror_albedo_quadrature(mu, alpha, 32); });
+}
+
+AlbedoCurve AlbedoCurve::glass(float alpha, float eta) {
+    return AlbedoCurve([&](float mu) { return glass_albedo_quadrature(mu, alpha, eta, 32); });
+}
+
+float AlbedoCurve::operator()(float cos_o) const noexcept {
     const Cell c = cell(safe_sqrt(cos_o), kCells);
     return values_[c.i] + (values_[c.i + 1] - values_[c.i]) * c.t;
 }

@@ -1,27 +1,39 @@
 #pragma once
-// How much light a rough dielectric boundary sends back, over all directions: what a base below it
-// does not get.
+// How much light a rough boundary sends back or lets through in one bounce, over all directions:
+// what a base below it does not get, and what bouncing between the microfacets has to give back.
+// Interpolated from tables made by quadrature at the first call; absolute error below 0.01
+// (tests/stats/furnace_test.cpp).
 
 namespace tessera {
 
-/// Directional albedo of GGX reflection off a dielectric, single scattering. cos_o in (0, 1], alpha
-/// in [0, 1], eta = index beyond over here, in [1, 4] (clamped). Interpolated from a table made at
-/// the first call by quadrature over the visible normals; absolute error below 0.01
-/// (tests/stats/furnace_test.cpp).
+/// Directional albedo of GGX reflection off a dielectric. cos_o in (0, 1], alpha in [0, 1], eta =
+/// index beyond over here, in [1, 4] (clamped).
 float dielectric_reflection_albedo(float cos_o, float alpha, float eta) noexcept;
+/// The same of a boundary that reflects everything: what is lost is lost to single scattering.
+float mirror_albedo(float cos_o, float alpha) noexcept;
+/// Reflected and transmitted together; eta in [1/4, 4] (clamped).
+float glass_albedo(float cos_o, float alpha, float eta) noexcept;
 
-/// The same along cos_o alone, for a boundary that does not vary: by quadrature, once per material.
-class ReflectionAlbedoCurve {
+/// One of them along cos_o alone, for a boundary that does not vary: by quadrature, once per
+/// material.
+class AlbedoCurve {
 public:
-    ReflectionAlbedoCurve(float alpha, float eta);
+    static AlbedoCurve dielectric(float alpha, float eta);
+    static AlbedoCurve mirror(float alpha);
+    static AlbedoCurve glass(float alpha, float eta);
     float operator()(float cos_o) const noexcept;
 
 private:
+    template <class Quadrature>
+    explicit AlbedoCurve(Quadrature quadrature);
+
     static constexpr int kCells = 64;
     float values_[kCells];
 };
 
-/// The same by quadrature with n x n points; for the table and its test.
+/// By quadrature with n x n points; for the tables and their tests.
 float dielectric_reflection_albedo_quadrature(float cos_o, float alpha, float eta, int n) noexcept;
+float mirror_albedo_quadrature(float cos_o, float alpha, int n) noexcept;
+float glass_albedo_quadrature(float cos_o, float alpha, float eta, int n) noexcept;
 
 }  // namespace tessera

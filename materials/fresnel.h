@@ -7,13 +7,17 @@
 
 namespace tessera {
 
+/// Cosine on the far side of a boundary; 0 under total internal reflection.
+inline float refracted_cosine(float cos_i, float eta) {
+    return safe_sqrt(1.0f - (1.0f - cos_i * cos_i) / (eta * eta));
+}
+
 /// Unpolarised dielectric. cos_i >= 0: cosine on the incident side; eta: index beyond over index
-/// here. Returns 1 under total internal reflection; cos_t receives the transmitted cosine (0 then).
+/// here. Returns 1 under total internal reflection.
 /// Born & Wolf, "Principles of Optics", section 1.5.2.
-inline float fresnel_dielectric(float cos_i, float eta, float* cos_t_out = nullptr) {
+inline float fresnel_dielectric(float cos_i, float eta) {
     const float sin2_t = (1.0f - cos_i * cos_i) / (eta * eta);
     const float cos_t = safe_sqrt(1.0f - sin2_t);
-    if (cos_t_out) *cos_t_out = cos_t;
     // Both polarisations over one denominator.
     const float s = cos_i + eta * cos_t, p = eta * cos_i + cos_t;
     const float rs = (cos_i - eta * cos_t) * p, rp = (eta * cos_i - cos_t) * s;

@@ -11,7 +11,7 @@
 namespace tessera {
 
 /// How a lobe counts for the depth limits and the passes.
-enum class LobeClass : std::uint8_t { diffuse, glossy, transmission };
+enum class LobeClass : std::uint8_t { diffuse, glossy, transmission, subsurface };
 
 struct LobeEval {
     Color f{0.0f};
@@ -37,7 +37,9 @@ struct SmoothSample {
 ///  - albedo(wo): the share of light it sends back, roughly, for choosing among lobes;
 ///  - extended lobes: eval(wo, wi) and direction(wo, u, choice), without branches: they run for
 ///    sixteen lanes at once; spread(): the half angle by which a ray cone grows, radians, rough;
-///  - smooth lobes: sample(wo, choice).
+///  - smooth lobes: sample(wo, u, choice), and branch(wo, child), which calls child(SmoothSample)
+///  for
+///    each of their directions: the children of a ray tree.
 
 /// a if `yes`, else b, by a blend: both are computed.
 inline float pick(bool yes, float a, float b) { return yes ? a : b; }

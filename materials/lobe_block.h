@@ -6,8 +6,13 @@
 #include <tuple>
 
 #include "materials/lobes/diffuse.h"
+#include "materials/lobes/eon.h"
+#include "materials/lobes/framed.h"
+#include "materials/lobes/fuzz.h"
 #include "materials/lobes/glass.h"
 #include "materials/lobes/reflection.h"
+#include "materials/lobes/subsurface.h"
+#include "materials/thin_film.h"
 #include "renderer/core/sampler.h"
 
 namespace tessera {
@@ -108,7 +113,7 @@ public:
             if (mine == 0) return;
             if constexpr (Model::kDelta) {
                 bounced |= mine;
-                each(mine, [&](int i) { set_smooth(i, kind, out); });
+                each(mine, [&](int i) { set_smooth(i, kind, u.at(i), out); });
             } else {
                 set_directions<Model>(mine, kind, u, out);
             }
@@ -138,9 +143,8 @@ public:
             using Model = typename std::remove_cvref_t<decltype(kind)>::Kind;
             if constexpr (Model::kDelta) {
                 if (!(kind.chance[lane] > 0.0f)) return;
-                kind.model.get(lane).branch(wo[lane], [&](const SmoothSample& s, float share) {
-                    child(s, kind.weight[lane] * share);
-                });
+                kind.model.get(lane).branch(
+                    wo[lane], [&](const SmoothSample& s) { child(s, kind.weight[lane]); });
             }
         });
     }
@@ -211,8 +215,8 @@ private:
     }
 
     template <class Model>
-    void set_smooth(int i, const LobesOfKind<Model>& kind, LobeSamples& out) noexcept {
-        const SmoothSample s = kind.model.get(i).sample(wo[i], rest_[i]);
+    void set_smooth(int i, const LobesOfKind<Model>& kind, Vec2f u, LobeSamples& out) noexcept {
+        const SmoothSample s = kind.model.get(i).sample(wo[i], u, rest_[i]);
         out.wi.set(i, s.to.wi);
         out.weight.set(i, s.weight * kind.weight[i] * (1.0f / kind.chance[i]));
         out.pdf[i] = 0.0f;
@@ -263,8 +267,13 @@ using DiffuseLobes = LobeBlock<DiffuseLobe>;
 using OpaqueLobes =
     LobeBlock<DiffuseLobe, RoughReflection<DielectricFresnel>, RoughReflection<MetalFresnel>,
               SmoothReflection<DielectricFresnel>, SmoothReflection<MetalFresnel>>;
-using AllLobes = LobeBlock<DiffuseLobe, RoughReflection<DielectricFresnel>,
-                           RoughReflection<MetalFresnel>, SmoothReflection<DielectricFresnel>,
-                           SmoothReflection<MetalFresnel>, RoughGlass, SmoothGlass, ThinGlass>;
+using AllLobes = LobeBlock<
+    DiffuseLobe, RoughReflection<DielectricFresnel>, RoughReflection<MetalFresnel>,
+    SmoothReflection<DielectricFresnel>, SmoothReflection<MetalFresnel>, EonLobe, FuzzLobe,
+    Framed<RoughReflection<DielectricFresnel>>, Framed<SmoothReflection<DielectricFresnel>>,
+    RoughReflection<FilmFresnel>, SmoothReflection<FilmFresnel>, DiffuseTransmission,
+    SubsurfaceEntry, RoughGlass<DielectricFresnel>, SmoothGlass<DielectricFresnel>,
+    RoughSheet<DielectricFresnel>, SmoothSheet<DielectricFresnel>, RoughGlass<FilmFresnel>,
+    SmoothGlass<FilmFresnel>, RoughSheet<FilmFresnel>, SmoothSheet<FilmFresnel>>;
 
 }  // namespace tessera

@@ -1,6 +1,12 @@
 #include "materials/program.h"
 
 #include <algorithm>
+#include <type_traits>
+#include <utility>
+
+#include "materials/lobe.h"
+#include "materials/surface/params_of.h"
+#include "renderer/api/openpbr_inputs.h"
 
 namespace tessera {
 namespace {
@@ -47,39 +53,70 @@ float read(const FloatInput& input, const ShadeInput& in, const TextureStore* st
     return input.value * (input.invert ? 1.0f - v : v);
 }
 
+Color constant_of(const ColorInput& input) { return color_of(input.value); }
+float constant_of(const FloatInput& input) { return input.value; }
+
 bool zero(const FloatInput& input) { return input.value == 0.0f; }
 bool one(const FloatInput& input) { return input.value == 1.0f && input.texture < 0; }
 
 // Calls visit(texture index, use) for every input; Material is MaterialDesc, const or not.
 template <class Material, class Visit>
 void visit_textures(Material& m, Visit visit) {
-    for (auto* c : {&m.base_color, &m.specular_color, &m.transmission_color, &m.emission_color}) {
-        visit(c->texture, TextureUse::color);
-    }
-    for (auto* f : {&m.base_weight, &m.base_metalness, &m.specular_weight, &m.specular_roughness,
-                    &m.specular_roughness_anisotropy, &m.transmission_weight, &m.emission_luminance,
-                    &m.geometry_opacity}) {
-        visit(f->texture, TextureUse::data);
-    }
+    visit_openpbr([&](auto member, const OpenPbrInput&) {
+        auto& input = m.*member;
+        constexpr bool kColor = std::is_same_v<std::remove_cvref_t<decltype(input)>, ColorInput>;
+        visit(input.texture, kColor ? TextureUse::color : TextureUse::data);
+    });
     visit(m.geometry_normal, TextureUse::data);
+    visit(m.geometry_coat_normal, TextureUse::data);
+}
+
+template <class... Inputs>
+void drop(Inputs&... inputs) {
+    ((inputs.texture = -1), ...);
 }
 
 // Inputs that cannot reach the result lose their textures: they are then never loaded.
 MaterialDesc folded(MaterialDesc m) {
     if (zero(m.emission_luminance) || max_component(color_of(m.emission_color.value)) == 0.0f) {
         m.emission_luminance = {0};
-        m.emission_color.texture = -1;
+        drop(m.emission_color);
     }
     const bool metal = one(m.base_metalness), clear = one(m.transmission_weight);
-    if (metal) m.transmission_weight = {0};
-    if (zero(m.transmission_weight)) m.transmission_color.texture = -1;
-    if (clear && zero(m.base_metalness)) m.base_color.texture = -1, m.base_weight.texture = -1;
-    const bool dielectric_boundary = !zero(m.specular_weight) && m.specular_ior != 1.0f;
+    if (metal) m.transmission_weight = m.subsurface_weight = m.base_diffuse_roughness = {0};
+    if (zero(m.transmission_weight))
+        drop(m.transmission_color, m.transmission_depth, m.transmission_scatter,
+             m.transmission_scatter_anisotropy, m.transmission_dispersion_scale,
+             m.transmission_dispersion_abbe_number);
+    if (clear && zero(m.base_metalness)) drop(m.base_color, m.base_weight);
+    if (clear) m.subsurface_weight = m.base_diffuse_roughness = {0};
+    if (zero(m.subsurface_weight))
+        drop(m.subsurface_color, m.subsurface_radius, m.subsurface_radius_scale,
+             m.subsurface_scatter_anisotropy);
+    if (zero(m.coat_weight)) {
+        drop(m.coat_color, m.coat_roughness, m.coat_roughness_anisotropy, m.coat_ior,
+             m.coat_darkening);
+        m.geometry_coat_normal = -1;
+    }
+    if (zero(m.fuzz_weight)) drop(m.fuzz_color, m.fuzz_roughness);
+    if (zero(m.thin_film_weight)) drop(m.thin_film_thickness, m.thin_film_ior);
+    const bool same_index = m.specular_ior.value == 1.0f && m.specular_ior.texture < 0;
+    const bool dielectric_boundary = !zero(m.specular_weight) && !same_index;
     if (!dielectric_boundary && zero(m.base_metalness) && zero(m.transmission_weight)) {
-        m.specular_color.texture = m.specular_roughness.texture =
-            m.specular_roughness_anisotropy.texture = -1;
+        drop(m.specular_color, m.specular_roughness, m.specular_roughness_anisotropy);
+        m.thin_film_weight = {0};
     }
     return m;
+}
+
+std::pair<float, float> limits_of(auto wanted) {
+    std::pair<float, float> out{0.0f, 1.0f};
+    visit_openpbr([&](auto member, const OpenPbrInput& info) {
+        if constexpr (std::is_same_v<decltype(member), decltype(wanted)>)
+            if (member == wanted)
+                out = {static_cast<float>(info.low), static_cast<float>(info.high)};
+    });
+    return out;
 }
 
 }  // namespace
@@ -108,67 +145,75 @@ ShaderProgram::ShaderProgram(const MaterialDesc& desc) : m_(folded(desc)) {
     facts_.emissive = !zero(m_.emission_luminance);
     facts_.emission_textured = m_.emission_luminance.texture >= 0 || m_.emission_color.texture >= 0;
     facts_.transmission = !zero(m_.transmission_weight);
-    facts_.specular = facts_.transmission || !zero(m_.base_metalness) ||
-                      (!zero(m_.specular_weight) && m_.specular_ior != 1.0f);
+    const bool boundary = !zero(m_.specular_weight) &&
+                          (m_.specular_ior.value != 1.0f || m_.specular_ior.texture >= 0);
+    facts_.layers = !zero(m_.fuzz_weight) || !zero(m_.coat_weight) || !zero(m_.thin_film_weight) ||
+                    !zero(m_.base_diffuse_roughness) || !zero(m_.subsurface_weight);
+    facts_.specular = facts_.transmission || !zero(m_.base_metalness) || boundary || facts_.layers;
+    facts_.glass = facts_.transmission && !m_.geometry_thin_walled;
+    facts_.subsurface = !zero(m_.subsurface_weight) && !m_.geometry_thin_walled;
+    facts_.dispersion = facts_.glass && !zero(m_.transmission_dispersion_scale);
     facts_.uv = facts_.textured;
-    facts_.tangent = m_.geometry_normal >= 0 || !zero(m_.specular_roughness_anisotropy);
+    facts_.tangent = m_.geometry_normal >= 0 || m_.geometry_coat_normal >= 0 ||
+                     !zero(m_.specular_roughness_anisotropy) ||
+                     (!zero(m_.coat_weight) && !zero(m_.coat_roughness_anisotropy));
     facts_.vertex_color = m_.use_vertex_color;
-    const auto value = [](const FloatInput& f) { return f.value; };
+
     SurfaceParams p;
-    p.base_color = color_of(m_.base_color.value) * value(m_.base_weight);
-    p.base_metalness = value(m_.base_metalness);
-    p.specular_weight = value(m_.specular_weight);
-    p.specular_color = color_of(m_.specular_color.value);
-    p.specular_roughness = value(m_.specular_roughness);
-    p.specular_roughness_anisotropy = value(m_.specular_roughness_anisotropy);
-    p.specular_ior = m_.specular_ior;
-    p.transmission_weight = value(m_.transmission_weight);
-    p.transmission_color = color_of(m_.transmission_color.value);
+    visit_params([&](auto input, auto param) {
+        p.*param = constant_of(m_.*input);
+        if ((m_.*input).texture >= 0) note_varying(input, param);
+    });
     p.thin_walled = m_.geometry_thin_walled;
-    const bool same_boundary = m_.specular_roughness.texture < 0 &&
-                               m_.specular_roughness_anisotropy.texture < 0 &&
-                               m_.specular_weight.texture < 0;
-    if (same_boundary && facts_.specular && !one(m_.base_metalness) &&
-        !one(m_.transmission_weight)) {
-        const Surface s(p);
-        boundary_ =
-            std::make_shared<ReflectionAlbedoCurve>(std::sqrt(s.ggx.ax * s.ggx.ay), s.boundary_eta);
-        p.boundary = boundary_.get();
-    }
     constant_ = Surface(p);
+    transmission_ = transmission_medium(p);
+    subsurface_ = subsurface_medium(p);
+    bool same_boundaries = true;
+    for (const FloatInput* input :
+         {&m_.specular_roughness, &m_.specular_roughness_anisotropy, &m_.specular_weight,
+          &m_.specular_ior, &m_.coat_weight, &m_.coat_roughness, &m_.coat_roughness_anisotropy,
+          &m_.coat_ior})
+        same_boundaries &= input->texture < 0;
+    if (same_boundaries && facts_.specular) {
+        curves_ = std::make_shared<SurfaceCurves>(constant_.make_curves());
+        constant_.curves = curves_.get();
+    }
 }
 
-SurfaceParams ShaderProgram::varied(const ShadeInput& in,
-                                    const TextureStore* store) const noexcept {
+void ShaderProgram::note_varying(ColorInput MaterialDesc::*input, Color SurfaceParams::*param) {
+    const auto [low, high] = limits_of(input);
+    varying_.push_back({.color = input, .color_param = param, .low = low, .high = high});
+}
+
+void ShaderProgram::note_varying(FloatInput MaterialDesc::*input, float SurfaceParams::*param) {
+    const auto [low, high] = limits_of(input);
+    varying_.push_back({.scalar = input, .scalar_param = param, .low = low, .high = high});
+}
+
+Surface ShaderProgram::varied(const ShadeInput& in, const TextureStore* store) const noexcept {
     SurfaceParams p = constant_.p;
-    p.base_color = base_color(in, store);
-    if (facts_.textured) {
-        if (m_.base_metalness.texture >= 0)
-            p.base_metalness = clamp01(read(m_.base_metalness, in, store));
-        if (m_.specular_weight.texture >= 0)
-            p.specular_weight = clamp01(read(m_.specular_weight, in, store));
-        if (m_.specular_color.texture >= 0) {
-            p.specular_color =
-                min(max(read(m_.specular_color, in, store), Color(0.0f)), Color(1.0f));
-        }
-        if (m_.specular_roughness.texture >= 0)
-            p.specular_roughness = clamp01(read(m_.specular_roughness, in, store));
-        if (m_.specular_roughness_anisotropy.texture >= 0) {
-            p.specular_roughness_anisotropy =
-                clamp01(read(m_.specular_roughness_anisotropy, in, store));
-        }
-        if (m_.transmission_weight.texture >= 0)
-            p.transmission_weight = clamp01(read(m_.transmission_weight, in, store));
-        if (m_.transmission_color.texture >= 0) {
-            p.transmission_color =
-                min(max(read(m_.transmission_color, in, store), Color(0.0f)), Color(1.0f));
-        }
+    for (const Varying& v : varying_) {
+        if (v.color)
+            p.*v.color_param = min(max(read(m_.*v.color, in, store), Color(v.low)), Color(v.high));
+        else
+            p.*v.scalar_param = std::clamp(read(m_.*v.scalar, in, store), v.low, v.high);
     }
-    return p;
+    if (facts_.vertex_color) p.base_color *= in.vertex_color;
+    Surface s(p);
+    s.curves = constant_.curves;
+    return s;
+}
+
+Medium ShaderProgram::transmission(const ShadeInput& in, const TextureStore* store) const noexcept {
+    return varying_.empty() ? transmission_ : transmission_medium(varied(in, store).p);
+}
+
+Medium ShaderProgram::subsurface(const ShadeInput& in, const TextureStore* store) const noexcept {
+    return varying_.empty() ? subsurface_ : subsurface_medium(varied(in, store).p);
 }
 
 Color ShaderProgram::base_color(const ShadeInput& in, const TextureStore* store) const noexcept {
-    Color c = constant_.p.base_color;
+    Color c = constant_.p.base_color * constant_.p.base_weight;
     if (m_.base_color.texture >= 0 || m_.base_weight.texture >= 0) {
         c = read(m_.base_color, in, store) * read(m_.base_weight, in, store);
         c = min(max(c, Color(0.0f)), Color(1.0f));
@@ -177,8 +222,8 @@ Color ShaderProgram::base_color(const ShadeInput& in, const TextureStore* store)
 }
 
 Color ShaderProgram::emission(const ShadeInput& in, const TextureStore* store) const noexcept {
-    return max(read(m_.emission_color, in, store) * read(m_.emission_luminance, in, store),
-               Color(0.0f));
+    const float radiance = read(m_.emission_luminance, in, store) * (1.0f / kLumensPerWatt);
+    return max(read(m_.emission_color, in, store) * radiance, Color(0.0f));
 }
 
 Color ShaderProgram::visible_emission(const ShadeInput& in,
@@ -188,7 +233,8 @@ Color ShaderProgram::visible_emission(const ShadeInput& in,
 }
 
 Color ShaderProgram::mean_emission(const TextureStore* store) const noexcept {
-    Color c = color_of(m_.emission_color.value) * m_.emission_luminance.value;
+    Color c =
+        color_of(m_.emission_color.value) * (m_.emission_luminance.value * (1.0f / kLumensPerWatt));
     for (const auto& [texture, grey] : {std::pair{m_.emission_color.texture, false},
                                         std::pair{m_.emission_luminance.texture, true}}) {
         if (texture < 0) continue;
@@ -206,12 +252,18 @@ float ShaderProgram::opacity(Vec2f uv, const TextureStore* store) const noexcept
     return clamp01(o.value * (o.invert ? 1.0f - v : v));
 }
 
-std::optional<Vec3f> ShaderProgram::normal(const ShadeInput& in,
-                                           const TextureStore* store) const noexcept {
-    if (m_.geometry_normal < 0) return std::nullopt;
-    const Texel t = store->sample(m_.geometry_normal, in.uv.x, in.uv.y, in.uv_width);
-    const float s = m_.geometry_normal_scale;
-    const Vec3f n{(2.0f * t[0] - 1.0f) * s, (2.0f * t[1] - 1.0f) * s,
+Vec3f ShaderProgram::normal(const ShadeInput& in, const TextureStore* store) const noexcept {
+    return mapped_normal(m_.geometry_normal, m_.geometry_normal_scale, in, store);
+}
+
+Vec3f ShaderProgram::coat_normal(const ShadeInput& in, const TextureStore* store) const noexcept {
+    return mapped_normal(m_.geometry_coat_normal, m_.geometry_coat_normal_scale, in, store);
+}
+
+Vec3f ShaderProgram::mapped_normal(int texture, float scale, const ShadeInput& in,
+                                   const TextureStore* store) const noexcept {
+    const Texel t = store->sample(texture, in.uv.x, in.uv.y, in.uv_width);
+    const Vec3f n{(2.0f * t[0] - 1.0f) * scale, (2.0f * t[1] - 1.0f) * scale,
                   std::max(2.0f * t[2] - 1.0f, 1e-3f)};
     return normalize(n);
 }

@@ -4,11 +4,11 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
-#include "materials/surface/openpbr.h"
+#include "materials/medium.h"
+#include "materials/surface/surface.h"
 #include "renderer/api/scene_desc.h"
 #include "renderer/image/texture.h"
 
@@ -21,7 +21,11 @@ struct ProgramFacts {
     bool emissive = false;
     bool emission_textured = false;
     bool specular = false;  // any lobe other than Lambert's
+    bool layers = false;    // fuzz, coat, film, rough or translucent body
     bool transmission = false;
+    bool glass = false;       // solid: refracts, encloses a medium
+    bool subsurface = false;  // solid: light walks through it
+    bool dispersion = false;
     bool textured = false;  // reads an image while shading
     bool uv = false;        // reads texture coordinates
     bool tangent = false;   // reads dpdu
@@ -42,14 +46,12 @@ public:
 
     const ProgramFacts& facts() const noexcept { return facts_; }
 
-    /// Calls use(const Surface&) with the surface at a point. store may be null if nothing is
-    /// textured.
+    /// Calls use(const Surface&) with the surface at a point, and returns its result. store may be
+    /// null if nothing is textured.
     template <class Use>
-    void with_surface(const ShadeInput& in, const TextureStore* store, Use use) const noexcept {
-        if (facts_.textured || facts_.vertex_color)
-            use(Surface(varied(in, store)));
-        else
-            use(constant_);
+    auto with_surface(const ShadeInput& in, const TextureStore* store, Use use) const noexcept {
+        if (facts_.textured || facts_.vertex_color) return use(varied(in, store));
+        return use(constant_);
     }
     /// surface().base_color alone: all that a Lambertian surface has.
     Color base_color(const ShadeInput& in, const TextureStore* store) const noexcept;
@@ -65,17 +67,38 @@ public:
     /// The constant that the opacity's texture is multiplied by.
     float opacity_factor() const noexcept { return m_.geometry_opacity.value; }
     bool has_normal_map() const noexcept { return m_.geometry_normal >= 0; }
-    /// Normal in the tangent frame from the normal map; none if there is no map.
-    std::optional<Vec3f> normal(const ShadeInput& in, const TextureStore* store) const noexcept;
+    bool has_coat_normal_map() const noexcept { return m_.geometry_coat_normal >= 0; }
+    /// Normals in the tangent frame from the normal maps, which must be there.
+    Vec3f normal(const ShadeInput& in, const TextureStore* store) const noexcept;
+    Vec3f coat_normal(const ShadeInput& in, const TextureStore* store) const noexcept;
+    /// Parameters that do not vary; what does is as if its images were white.
+    const SurfaceParams& constant() const noexcept { return constant_.p; }
+    /// What fills a body of it, taken at a point of its surface.
+    Medium transmission(const ShadeInput& in, const TextureStore* store) const noexcept;
+    Medium subsurface(const ShadeInput& in, const TextureStore* store) const noexcept;
+    int dielectric_priority() const noexcept { return m_.dielectric_priority; }
 
 private:
-    SurfaceParams varied(const ShadeInput& in, const TextureStore* store) const noexcept;
+    /// An input that has an image, and where its value goes; one of the two kinds is there.
+    struct Varying {
+        ColorInput MaterialDesc::*color = nullptr;
+        Color SurfaceParams::*color_param = nullptr;
+        FloatInput MaterialDesc::*scalar = nullptr;
+        float SurfaceParams::*scalar_param = nullptr;
+        float low = 0, high = 1;
+    };
+    void note_varying(ColorInput MaterialDesc::*input, Color SurfaceParams::*param);
+    void note_varying(FloatInput MaterialDesc::*input, float SurfaceParams::*param);
+    Surface varied(const ShadeInput& in, const TextureStore* store) const noexcept;
+    Vec3f mapped_normal(int texture, float scale, const ShadeInput& in,
+                        const TextureStore* store) const noexcept;
 
     MaterialDesc m_;
     Surface constant_{SurfaceParams()};  // what does not vary
+    std::vector<Varying> varying_;
+    Medium transmission_, subsurface_;  // constant_'s
     ProgramFacts facts_;
-    std::shared_ptr<const ReflectionAlbedoCurve>
-        boundary_;  // shared: programs are copied into place
+    std::shared_ptr<const SurfaceCurves> curves_;  // shared: programs are copied into place
 };
 
 /// The description with its texture indices taken through `to` (-1: not loaded because nothing

@@ -81,13 +81,12 @@ struct SmoothReflection {
         SmoothReflection get(int i) const { return {fresnel.get(i)}; }
     };
 
-    SmoothSample sample(Vec3f wo, float) const {
+    SmoothSample sample(Vec3f wo, Vec2f, float) const {
         return {{{-wo.x, -wo.y, wo.z}, 1.0f, LobeClass::glossy}, fresnel(wo.z)};
     }
-    /// Calls child(sample, share) for each direction of a ray tree.
     template <class Child>
     void branch(Vec3f wo, Child child) const {
-        child(sample(wo, 0.0f), 1.0f);
+        child(sample(wo, {}, 0.0f));
     }
     Color albedo(Vec3f wo) const { return fresnel(wo.z); }
 };

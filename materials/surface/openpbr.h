@@ -1,113 +1,213 @@
 #pragma once
-// OpenPBR Surface 1.1, the part that exists now: its parameters at one point, and the lobes they
-// make. Andersson et al., "OpenPBR Surface Specification", Academy Software Foundation, 2024.
+// OpenPBR Surface 1.1: from a surface's parameters to its lobes. Fuzz over coat over a base that is
+// metal, glass, or a glossy diffuse or translucent body. Each layer is given what the ones above it
+// let through (albedo scaling), so that none makes energy.
 
-#include "materials/energy.h"
 #include "materials/lobe_block.h"
+#include "materials/surface/surface.h"
 
 namespace tessera {
 
-/// Parameters at a point, textures read.
-struct SurfaceParams {
-    Color base_color{0.8f};  // base_weight included
-    float base_metalness = 0;
-    float specular_weight = 1;
-    Color specular_color{1.0f};
-    float specular_roughness = 0.3f;
-    float specular_roughness_anisotropy = 0;
-    float specular_ior = 1.5f;
-    float transmission_weight = 0;
-    Color transmission_color{1.0f};
-    bool thin_walled = false;
-    const ReflectionAlbedoCurve* boundary =
-        nullptr;  // of the dielectric boundary if it is the same everywhere
+/// How a surface is looked at. Directions are local to the lane's shading frame.
+struct View {
+    bool front = true;  // from outside
+    bool walks = true;  // translucent bodies are walked through; else they are diffuse
+    float eta = 0;      // index beyond over here for glass; 0: by the surface's ior, against air
+    Frame coat;         // the coat's own frame, with wo on its side
 };
-
-/// Roughness to the two GGX alphas. OpenPBR 1.1, "Microfacet model".
-Ggx openpbr_ggx(float roughness, float anisotropy);
-
-/// Parameters with what follows from them whatever they are seen from.
-struct Surface {
-    SurfaceParams p;
-    Ggx ggx;
-    float ior = 1;           // specular_weight included
-    float boundary_eta = 1;  // of the opaque base's boundary, always entered from outside: >= 1
-
-    explicit Surface(const SurfaceParams& params);
-};
-
-/// Pushes the lobes of a lane of `lobes`, seen from lobes.wo[lane] (z > 0); front: that is on the
-/// outside. Kinds that the block does not have are taken as not needed.
-template <class Lobes>
-void openpbr_lobes(const Surface& surface, bool front, int lane, Lobes& lobes) noexcept;
-
-// A boundary is looked through undisturbed where the two indices agree; the half vector is
-// undefined there.
-inline constexpr float kSameIndex = 1e-4f;
 
 namespace openpbr {
 
-inline bool is_smooth(const Ggx& ggx) { return std::max(ggx.ax, ggx.ay) < kMinAlpha; }
+inline Color power(Color c, float e) {
+    return {std::pow(c.x, e), std::pow(c.y, e), std::pow(c.z, e)};
+}
 
 template <class Fresnel, class Lobes>
 void push_reflection(const Ggx& ggx, const Fresnel& fresnel, Color weight, Color albedo, int lane,
                      Lobes& lobes) {
-    if (is_smooth(ggx)) {
+    if (is_smooth(ggx))
         lobes.push(lane, SmoothReflection<Fresnel>{fresnel}, weight);
-    } else {
+    else
         lobes.push(lane, RoughReflection<Fresnel>{ggx, fresnel, albedo}, weight);
-    }
+}
+
+/// Pushes the fuzz; returns what it lets through.
+template <class Lobes>
+Color push_fuzz(const SurfaceParams& p, int lane, Lobes& lobes) {
+    const FuzzLobe fuzz = FuzzLobe::seen_at(lobes.wo.z[lane], p.fuzz_roughness);
+    lobes.push(lane, fuzz, p.fuzz_color * p.fuzz_weight);
+    return Color(1.0f - p.fuzz_weight * fuzz.reflectance);
+}
+
+/// Pushes the coat under `weight`; returns what reaches the base and comes back through it.
+/// OpenPBR 1.1, "Coat": absorption along the refracted ray, darkening by internal reflection.
+template <class Lobes>
+Color push_coat(const Surface& surface, const View& view, Color weight, int lane, Lobes& lobes) {
+    const SurfaceParams& p = surface.p;
+    const float cos_o = std::max(view.coat.to_local(lobes.wo[lane]).z, 1e-4f);
+    const float reflected = surface.coat_albedo(cos_o);
+    const DielectricFresnel fresnel{p.coat_ior};
+    using Rough = RoughReflection<DielectricFresnel>;
+    using Smooth = SmoothReflection<DielectricFresnel>;
+    const Color amount = weight * p.coat_weight;
+    if (is_smooth(surface.coat_ggx))
+        lobes.push(lane, Framed<Smooth>{{fresnel}, view.coat}, amount);
+    else
+        lobes.push(lane, Framed<Rough>{{surface.coat_ggx, fresnel, Color(reflected)}, view.coat},
+                   amount);
+    const Color tint =
+        power(p.coat_color, 1.0f / std::max(refracted_cosine(cos_o, p.coat_ior), 1e-3f));
+    const float k = surface.coat_reflection;
+    const auto dark = [&](float below) {
+        return 1.0f + ((1.0f - k) / (1.0f - below * k) - 1.0f) * p.coat_darkening;
+    };
+    const Color& b = surface.below_coat;
+    const Color through = tint * Color(dark(b.x), dark(b.y), dark(b.z)) * (1.0f - reflected);
+    return lerp(Color(1.0f), through, p.coat_weight);
+}
+
+inline FilmFresnel film_on(const SurfaceParams& p, float eta, float outside = 1.0f) {
+    FilmFresnel f;
+    f.eta = eta;
+    f.film_eta = p.thin_film_ior / outside;
+    f.thickness = p.thin_film_thickness;
+    f.weight = p.thin_film_weight;
+    return f;
 }
 
 template <class Lobes>
-void push_transmission(const Surface& surface, bool front, Color weight, int lane, Lobes& lobes) {
+void push_metal(const Surface& surface, Color weight, int lane, Lobes& lobes) {
     const SurfaceParams& p = surface.p;
-    const Ggx& ggx = surface.ggx;
-    const float ior = surface.ior;
-    if (p.thin_walled) {
-        lobes.push(lane, ThinGlass{ior, p.specular_color, p.transmission_color}, weight);
-        return;
+    const MetalFresnel fresnel{p.base_color * p.base_weight, p.specular_color};
+    const float cos_o = lobes.wo.z[lane], e = surface.metal_albedo(cos_o);
+    // What bounces among the microfacets is tinted once more at each bounce. Turquin 2019, eq. 16.
+    const Color gain = Color(1.0f) + fresnel.f0 * ((1.0f - e) / e);
+    const Color amount = weight * gain * std::min(p.specular_weight, 1.0f);
+    if constexpr (Lobes::template kHas<RoughReflection<FilmFresnel>>) {
+        if (p.thin_film_weight > 0.0f) {
+            FilmFresnel film = film_on(p, 1.0f);
+            film.metal = 1.0f, film.f0 = fresnel.f0, film.f82 = fresnel.f82;
+            return push_reflection(surface.ggx, film, amount, film(cos_o) * e, lane, lobes);
+        }
     }
-    const float eta = front ? ior : 1.0f / ior;
-    if (is_smooth(ggx) || std::fabs(ior - 1.0f) < kSameIndex) {
-        lobes.push(lane, SmoothGlass{eta, p.specular_color, p.transmission_color}, weight);
+    push_reflection(surface.ggx, fresnel, amount, fresnel(cos_o) * e, lane, lobes);
+}
+
+/// Pushes the opaque base's boundary; returns the share that it reflects.
+template <class Lobes>
+Color push_boundary(const Surface& surface, Color weight, int lane, Lobes& lobes) {
+    const SurfaceParams& p = surface.p;
+    const float eta = surface.boundary_eta, cos_o = lobes.wo.z[lane];
+    if (!(eta > 1.0f + kSameIndex)) return Color(0.0f);
+    const float bare = surface.boundary_albedo(cos_o);
+    const Color amount = weight * p.specular_color;
+    if constexpr (Lobes::template kHas<RoughReflection<FilmFresnel>>) {
+        if (p.thin_film_weight > 0.0f) {
+            const FilmFresnel film = film_on(p, eta);
+            const float plain = std::max(fresnel_dielectric(cos_o, eta), 1e-6f);
+            const Color reflected = min(film(cos_o) * (bare / plain), Color(1.0f));
+            push_reflection(surface.ggx, film, amount, reflected, lane, lobes);
+            return p.specular_color * reflected;
+        }
+    }
+    push_reflection(surface.ggx, DielectricFresnel{eta}, amount, Color(bare), lane, lobes);
+    return p.specular_color * bare;
+}
+
+/// The diffuse or translucent body.
+template <class Lobes>
+void push_body(const SurfaceParams& p, const View& view, Color weight, int lane, Lobes& lobes) {
+    float diffuse = 1.0f;
+    Color also(0.0f);  // what a body that is not walked through adds to the diffuse colour
+    if constexpr (Lobes::template kHas<SubsurfaceEntry>) {
+        const float share = p.subsurface_weight;
+        diffuse = 1.0f - share;
+        const float forward = 0.5f * (1.0f + p.subsurface_scatter_anisotropy);
+        if (share > 0.0f && p.thin_walled) {
+            lobes.push(lane, DiffuseTransmission{},
+                       weight * p.subsurface_color * (share * forward));
+            also = p.subsurface_color * (share * (1.0f - forward));
+        } else if (share > 0.0f && view.front && view.walks) {
+            lobes.push(lane, SubsurfaceEntry{p.subsurface_color}, weight * share);
+        } else {
+            also = p.subsurface_color * share;
+        }
     } else {
-        lobes.push(lane, RoughGlass{ggx, eta, p.specular_color, p.transmission_color}, weight);
+        also = p.subsurface_color * p.subsurface_weight;
+        diffuse = 1.0f - p.subsurface_weight;
     }
+    const Color rho = p.base_color * p.base_weight;
+    if constexpr (Lobes::template kHas<EonLobe>) {
+        if (p.base_diffuse_roughness > 0.0f) {
+            lobes.push(lane, EonLobe{rho, p.base_diffuse_roughness}, weight * diffuse);
+            lobes.push(lane, DiffuseLobe{}, weight * also);
+            return;
+        }
+    }
+    lobes.push(lane, DiffuseLobe{}, weight * (rho * diffuse + also));
+}
+
+template <class Fresnel, class Lobes>
+void push_glass(const Surface& surface, const Fresnel& fresnel, Color weight, int lane,
+                Lobes& lobes) {
+    const SurfaceParams& p = surface.p;
+    const Color tint = p.transmission_depth > 0.0f ? Color(1.0f) : p.transmission_color;
+    const Glass<Fresnel> glass{fresnel, p.specular_color, tint};
+    const float cos_o = lobes.wo.z[lane], eta = fresnel.eta;
+    const bool smooth = is_smooth(surface.ggx);
+    // What a film takes from one side to the other is in no table: its losses are not given back.
+    constexpr bool kBare = std::is_same_v<Fresnel, DielectricFresnel>;
+    if (p.thin_walled) {
+        if (smooth) return lobes.push(lane, SmoothSheet<Fresnel>{glass}, weight);
+        const float gain = kBare ? 1.0f / surface.metal_albedo(cos_o) : 1.0f;
+        return lobes.push(lane, RoughSheet<Fresnel>{{glass, surface.ggx, gain}}, weight);
+    }
+    if (smooth || std::fabs(eta - 1.0f) < kSameIndex)
+        return lobes.push(lane, SmoothGlass<Fresnel>{glass}, weight);
+    const float gain = kBare ? 1.0f / surface.glass_albedo_for(cos_o, eta) : 1.0f;
+    lobes.push(lane, RoughGlass<Fresnel>{{glass, surface.ggx, gain}}, weight);
+}
+
+template <class Lobes>
+void push_transmission(const Surface& surface, const View& view, Color weight, int lane,
+                       Lobes& lobes) {
+    const float against_air =
+        view.front || surface.p.thin_walled ? surface.ior : 1.0f / surface.ior;
+    const float eta = view.eta > 0.0f ? view.eta : against_air;
+    if constexpr (Lobes::template kHas<RoughGlass<FilmFresnel>>) {
+        if (surface.p.thin_film_weight > 0.0f) {
+            const float outside = view.front || surface.p.thin_walled ? 1.0f : surface.ior;
+            return push_glass(surface, film_on(surface.p, eta, outside), weight, lane, lobes);
+        }
+    }
+    push_glass(surface, DielectricFresnel{eta}, weight, lane, lobes);
 }
 
 }  // namespace openpbr
 
+/// Pushes the lobes of a lane of `lobes`, seen from lobes.wo[lane] (z > 0). Kinds that the block
+/// does not have are taken as not needed.
 template <class Lobes>
-void openpbr_lobes(const Surface& surface, bool front, int lane, Lobes& lobes) noexcept {
+void openpbr_lobes(const Surface& surface, const View& view, int lane, Lobes& lobes) noexcept {
     const SurfaceParams& p = surface.p;
-    const Ggx& ggx = surface.ggx;
     const float metal = p.base_metalness;
     const float clear = (1.0f - metal) * p.transmission_weight;
     const float opaque = (1.0f - metal) * (1.0f - p.transmission_weight);
-    const float cos_o = lobes.wo.z[lane];
+    Color weight(1.0f);
+    if constexpr (Lobes::template kHas<FuzzLobe>) {
+        // The layers lie on the outside; through glass they are not seen from within.
+        const bool outside = view.front || clear == 0.0f;
+        if (p.fuzz_weight > 0.0f && outside) weight = openpbr::push_fuzz(p, lane, lobes);
+        if (p.coat_weight > 0.0f && outside)
+            weight *= openpbr::push_coat(surface, view, weight, lane, lobes);
+    }
     if (opaque > 0.0f) {
-        const float eta = surface.boundary_eta;
-        float reflected = 0.0f;
-        if (eta > 1.0f + kSameIndex) {
-            const float alpha = std::sqrt(ggx.ax * ggx.ay);
-            reflected = alpha < kMinAlpha ? fresnel_dielectric(cos_o, eta)
-                        : p.boundary      ? (*p.boundary)(cos_o)
-                                          : dielectric_reflection_albedo(cos_o, alpha, eta);
-            openpbr::push_reflection(ggx, DielectricFresnel{eta}, p.specular_color * opaque,
-                                     Color(reflected), lane, lobes);
-        }
-        // Albedo scaling: the base gets what the boundary lets through. OpenPBR 1.1, "Layering".
-        lobes.push(lane, DiffuseLobe{},
-                   p.base_color * (Color(1.0f) - p.specular_color * reflected) * opaque);
+        const Color reflected = openpbr::push_boundary(surface, weight * opaque, lane, lobes);
+        openpbr::push_body(p, view, weight * (Color(1.0f) - reflected) * opaque, lane, lobes);
     }
-    if (metal > 0.0f) {
-        const MetalFresnel fresnel{p.base_color, p.specular_color};
-        openpbr::push_reflection(ggx, fresnel, Color(metal * std::min(p.specular_weight, 1.0f)),
-                                 fresnel(cos_o), lane, lobes);
-    }
-    if constexpr (Lobes::template kHas<RoughGlass>) {
-        if (clear > 0.0f) openpbr::push_transmission(surface, front, Color(clear), lane, lobes);
+    if (metal > 0.0f) openpbr::push_metal(surface, weight * metal, lane, lobes);
+    if constexpr (Lobes::template kHas<RoughGlass<DielectricFresnel>>) {
+        if (clear > 0.0f) openpbr::push_transmission(surface, view, weight * clear, lane, lobes);
     }
 }
 

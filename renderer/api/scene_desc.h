@@ -61,28 +61,68 @@ struct FloatInput {
     bool operator==(const FloatInput&) const = default;
 };
 
-/// OpenPBR Surface 1.1, the parameters that exist now, with OpenPBR's names and defaults.
+/// OpenPBR Surface 1.1 with its own names, units and defaults.
 struct MaterialDesc {
     std::string name;
     SourceLoc loc;
+
     FloatInput base_weight{1};
     ColorInput base_color{{0.8f, 0.8f, 0.8f}};
+    FloatInput base_diffuse_roughness{0};
     FloatInput base_metalness{0};
+
     FloatInput specular_weight{1};
     ColorInput specular_color{{1, 1, 1}};
     FloatInput specular_roughness{0.3f};
     FloatInput specular_roughness_anisotropy{0};
-    float specular_ior = 1.5f;
+    FloatInput specular_ior{1.5f};
+
     FloatInput transmission_weight{0};
     ColorInput transmission_color{{1, 1, 1}};
-    FloatInput emission_luminance{0};  // radiance of a white emission, W/m^2/sr per channel
+    FloatInput transmission_depth{0};  // scene units
+    ColorInput transmission_scatter{{0, 0, 0}};
+    FloatInput transmission_scatter_anisotropy{0};
+    FloatInput transmission_dispersion_scale{0};
+    FloatInput transmission_dispersion_abbe_number{20};
+
+    FloatInput subsurface_weight{0};
+    ColorInput subsurface_color{{0.8f, 0.8f, 0.8f}};
+    FloatInput subsurface_radius{1};  // scene units
+    ColorInput subsurface_radius_scale{{1, 0.5f, 0.25f}};
+    FloatInput subsurface_scatter_anisotropy{0};
+
+    FloatInput coat_weight{0};
+    ColorInput coat_color{{1, 1, 1}};
+    FloatInput coat_roughness{0};
+    FloatInput coat_roughness_anisotropy{0};
+    FloatInput coat_ior{1.6f};
+    FloatInput coat_darkening{1};
+
+    FloatInput fuzz_weight{0};
+    ColorInput fuzz_color{{1, 1, 1}};
+    FloatInput fuzz_roughness{0.5f};
+
+    FloatInput thin_film_weight{0};
+    FloatInput thin_film_thickness{0.5f};  // micrometres
+    FloatInput thin_film_ior{1.4f};
+
+    FloatInput emission_luminance{0};  // cd/m^2 (nits); kLumensPerWatt makes it radiance
     ColorInput emission_color{{1, 1, 1}};
+
     FloatInput geometry_opacity{1};
     bool geometry_thin_walled = false;
     int geometry_normal = -1;  // tangent-space normal map (texture index), OpenGL handedness
     float geometry_normal_scale = 1;
+    int geometry_coat_normal = -1;  // the coat's own; none: the surface's, unmapped
+    float geometry_coat_normal_scale = 1;
+
+    int dielectric_priority = 0;    // of nested glass the higher number fills the overlap
     bool use_vertex_color = false;  // base_color is multiplied by the mesh's vertex colours
 };
+
+/// Luminous efficacy of white light, equal energy over the visible band: what turns nits into the
+/// radiance of our lights. Ward, "The RADIANCE Lighting Simulation and Rendering System", 1994.
+inline constexpr float kLumensPerWatt = 179.0f;
 
 // ---- shapes
 // ---------------------------------------------------------------------------------------

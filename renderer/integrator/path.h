@@ -13,8 +13,10 @@
 #include "renderer/core/robust.h"
 #include "renderer/core/sampler.h"
 #include "renderer/integrator/block.h"
+#include "renderer/integrator/inside.h"
 #include "renderer/integrator/ray_log.h"
 #include "renderer/integrator/shading.h"
+#include "renderer/integrator/walk.h"
 
 namespace tessera {
 
@@ -40,6 +42,7 @@ public:
             sample_lights();
             scatter(depth);
             occlude(depth);
+            alive_ |= passing_;
         }
         finish();
     }
@@ -84,6 +87,7 @@ private:
             cone_spread_[i] = camera.cone_spread();
             depth_[i] = {};
             depth_[i].layers_done = !job_.layers;
+            if constexpr (kMedia<F>) inside_[i].reset();
             if (!traceable(ray_[i].o, ray_[i].d)) return invalid(InvalidCause::camera_ray, i);
             alive_ |= 1u << i;
         });
@@ -106,12 +110,14 @@ private:
             });
         } else {
             each(alive_, [&](int i) {
-                if (job_.log) job_.log->single(ray_[i], seeds_[i], false);
-                scene_.accel().intersect(ray_[i], seeds_[i], hit_[i]);
+                if constexpr (kMedia<F>) {
+                    if (const Medium* medium = inside_[i].to_walk()) return walk_inside(i, *medium);
+                }
+                trace_single(ray_[i], seeds_[i], hit_[i]);
                 ask_for_index(i);
             });
         }
-        escaped_ = 0;
+        escaped_ = passing_ = 0;
         each(alive_, [&](int i) {
             if (hit_[i].valid()) {
                 prefetch_vertices(scene_.geometry(), target_[i], hit_[i]);
@@ -120,6 +126,26 @@ private:
             }
         });
         alive_ &= ~escaped_;
+    }
+
+    void trace_single(const Ray& ray, std::uint32_t seed, Hit& hit) const noexcept {
+        if (job_.log) job_.log->single(ray, seed, false);
+        scene_.accel().intersect(ray, seed, hit);
+    }
+
+    // Where the way leads through what scatters, the walk takes the place of the ray.
+    void walk_inside(int i, const Medium& medium) noexcept {
+        Color throughput = throughput_[i];
+        const WalkEnd end = walk(
+            medium, seeds_[i], ray_[i], throughput,
+            [&](const Ray& ray, std::uint32_t seed, Hit& hit) { trace_single(ray, seed, hit); });
+        counters_.rays.bounce += static_cast<std::uint64_t>(end.rays - 1);
+        throughput_.set(i, throughput);
+        // Light sampling could not have made a way that was scattered.
+        if (end.scattered) bsdf_pdf_[i] = 0.0f;
+        if (!end.arrived) return stop(i);
+        hit_[i] = end.hit;
+        ask_for_index(i);
     }
 
     void ask_for_index(int i) noexcept {
@@ -180,8 +206,17 @@ private:
         }
         cone_width_[i] += cone_spread_[i] * dot(s.p - ray_[i].o, d);
         const ShaderProgram* program = s.material >= 0 ? &scene_.program(s.material) : nullptr;
+        if constexpr (kMedia<F>) {
+            Inside& in = inside_[i];
+            const Color passed = in.arrive(s, d, length(s.p - ray_[i].o));
+            throughput_.set(i, throughput_[i] * passed);
+            if (in.leaves_body()) return depth_[i].last ? stop(i) : void();
+        }
         shade_in_[i] = shade_input<F>(scene_, program, hit_[i], cone_width_[i], d, s);
         if (depth == 0) note_first_hit(i, s);
+        if constexpr (kMedia<F>) {
+            if (program && program->facts().glass && meet_glass(i, *program)) return;
+        }
 
         // Emission, weighed against light sampling having found it.
         if (!program || program->facts().emissive) {
@@ -197,15 +232,41 @@ private:
         if (!program || depth_[i].last) stop(i);
     }
 
+    // A boundary of glass: between which indices, and whether there is one at all where bodies
+    // overlap. True: the path goes straight on.
+    bool meet_glass(int i, const ShaderProgram& program) noexcept {
+        const SurfacePoint& s = surface_[i];
+        const Vec3f d = ray_[i].d;
+        const bool real =
+            program.with_surface(shade_in_[i], scene_.textures(), [&](const Surface& surface) {
+                return inside_[i].meet_glass(program, surface, s.material, dot(s.ng, d) <= 0.0f,
+                                             shade_in_[i], scene_.textures(), seeds_[i]);
+            });
+        if (real) return false;
+        stop(i);
+        ray_[i] = Ray{offset_origin(s.p, s.p_error, s.ng, d), d};
+        if (!traceable(ray_[i].o, ray_[i].d)) {
+            invalid(InvalidCause::bounce_ray, i);
+        } else if (inside_[i].may_pass()) {
+            passing_ |= 1u << i;
+        }
+        return true;
+    }
+
     // ---- the frames that face the viewers, and what the surfaces do there
     void face_viewer() noexcept {
         Vec3Lanes wo, ns;
         each(alive_, [&](int i) {
             const SurfacePoint& s = surface_[i];
-            const bool front = dot(s.ng, -ray_[i].d) >= 0.0f;
+            Vec3f viewer = -ray_[i].d;
+            if constexpr (kMedia<F>) {
+                // Light that comes out of a body is looked at from outside.
+                if (inside_[i].leaves_body()) viewer = ray_[i].d;
+            }
+            const bool front = dot(s.ng, viewer) >= 0.0f;
             frame_.front.is[i] = front;
             frame_.ng.set(i, front ? s.ng : -s.ng);
-            wo.set(i, -ray_[i].d);
+            wo.set(i, viewer);
             ns.set(i, facing_normal<F>(s, scene_.program(s.material), shade_in_[i],
                                        scene_.textures(), front));
             p_.set(i, s.p);
@@ -230,9 +291,17 @@ private:
     void find_lobes() noexcept {
         lobes_.clear();
         each(alive_, [&](int i) {
-            push_lobes<F>(scene_.program(surface_[i].material), shade_in_[i], scene_.textures(),
-                          frame_.front.is[i] != 0, i, lobes_);
             from_[i] = {surface_[i].p};
+            const ShaderProgram& program = scene_.program(surface_[i].material);
+            View view;
+            view.front = frame_.front.is[i] != 0;
+            if constexpr (kMedia<F>) {
+                if (inside_[i].leaves_body()) return lobes_.push(i, DiffuseLobe{}, Color(1.0f));
+                view.eta = inside_[i].eta();
+                view.coat = coat_frame<F>(surface_[i], program, shade_in_[i], scene_.textures(),
+                                          view.front, frame_.shading(i), lobes_.wo[i]);
+            }
+            push_lobes<F>(program, shade_in_[i], scene_.textures(), view, i, lobes_);
         });
         lobes_.prepare();
         each(alive_, [&](int i) {
@@ -252,6 +321,14 @@ private:
         each(lanes, [&](int i) { look_at_emitter(i); });
         lobes_.eval(lanes, wi_);
         lanes &= weigh_lights();
+        if constexpr (kMedia<F>) {
+            each(lanes, [&](int i) {
+                const Medium* medium = inside_[i].medium();
+                if (!medium || medium->empty()) return;
+                const float way = light_.infinite[i] ? kInfinity : length(shadow_d_[i]);
+                pending_.set(i, pending_[i] * transmittance(*medium, way));
+            });
+        }
         each(lanes, [&](int i) {
             if (!traceable(shadow_o_[i], shadow_d_[i])) return invalid(InvalidCause::shadow_ray, i);
             shadow_lanes_ |= 1u << i;
@@ -354,8 +431,9 @@ private:
             const Vec3f local = scattered_.wi[i], wi = frame_.shading(i).to_world(local);
             next_o_.set(i, offset_origin(p_[i], p_error_[i], frame_.ng[i], wi));
             next_d_.set(i, wi);
-            leaves.is[i] =
-                same_side(wi, local, frame_.ng[i]) & (max_component(throughput_[i]) > 0.0f);
+            const bool same = same_side(wi, local, frame_.ng[i]);
+            const bool carries = max_component(throughput_[i]) > 0.0f;
+            leaves.is[i] = same & carries;
         }
         return leaves.mask();
     }
@@ -373,10 +451,12 @@ private:
     bool carry_on(int i, std::uint32_t depth) noexcept {
         PathDepth& at = depth_[i];
         // Behind a mirror or clear glass the albedo is that of what is seen there.
-        if (bsdf_pdf_[i] > 0.0f) at.layers_done = true;
+        const auto cls = static_cast<LobeClass>(scattered_.cls[i]);
+        if (bsdf_pdf_[i] > 0.0f || cls == LobeClass::subsurface) at.layers_done = true;
         if (!at.layers_done) out_[i].albedo = Color(0.0f);
         at.last = depth + 1 > static_cast<std::uint32_t>(settings_.max_depth);
-        switch (static_cast<LobeClass>(scattered_.cls[i])) {
+        switch (cls) {
+            case LobeClass::subsurface:
             case LobeClass::diffuse:
                 at.last |= ++at.diffuse > settings_.max_diffuse_depth;
                 break;
@@ -388,6 +468,14 @@ private:
                 break;
         }
         if (at.last && !scene_.emission_can_be_hit()) return false;
+        if constexpr (kMedia<F>) {
+            const ShaderProgram& program = scene_.program(surface_[i].material);
+            const Color tint =
+                inside_[i].scatter(cls, program, surface_[i].material, frame_.front.is[i] != 0,
+                                   shade_in_[i], scene_.textures());
+            throughput_.set(i, throughput_[i] * tint);
+            if (!(max_component(throughput_[i]) > 0.0f)) return false;
+        }
         ray_[i] = Ray{next_o_[i], next_d_[i]};
         if (!traceable(ray_[i].o, ray_[i].d)) {
             invalid(InvalidCause::bounce_ray, i);
@@ -437,6 +525,7 @@ private:
     BlockSamples& out_;
     Counters& counters_;
     LaneMask alive_ = 0, escaped_ = 0, shadow_lanes_ = 0;
+    LaneMask passing_ = 0;  // lanes that go straight on, past a boundary that is none
     std::uint32_t seeds_[kLanes];
     SamplePairs light_u_, choice_u_, bsdf_u_;
     float roulette_u_[kLanes];
@@ -449,6 +538,8 @@ private:
     float cone_width_[kLanes], cone_spread_[kLanes];
     float eta_scale_[kLanes];  // undoes radiance scaling for the roulette
     Lanes<PathDepth> depth_;
+    struct Nothing {};
+    std::conditional_t<kMedia<F>, Lanes<Inside>, Nothing> inside_;
 
     // Their present vertices.
     Lanes<Hit> hit_;

@@ -6,12 +6,17 @@
 #include <cmath>
 #include <type_traits>
 
+#include "materials/surface/openpbr.h"
 #include "renderer/scene/scene.h"
 
 namespace tessera {
 
+/// Whether paths can be inside of something.
 template <Features F>
-using Lobes = std::conditional_t<F.transmission, AllLobes,
+inline constexpr bool kMedia = F.transmission || F.layers;
+
+template <Features F>
+using Lobes = std::conditional_t<kMedia<F>, AllLobes,
                                  std::conditional_t<F.specular, OpaqueLobes, DiffuseLobes>>;
 
 /// The frame that faces the viewer.
@@ -41,24 +46,37 @@ inline Vec3f visible_normal(Vec3f ns, Vec3f wo) {
     return {seen ? ns.x : bent.x, seen ? ns.y : bent.y, seen ? ns.z : bent.z};
 }
 
+/// A normal of a normal map, which lives in the frame of the unflipped shading normal; none if it
+/// looks away from the surface.
+inline bool map_normal(const SurfacePoint& s, Vec3f mapped, bool front, Vec3f& out) {
+    const Frame base = frame_along(s.ns, s.dpdu);
+    const Vec3f m = normalize(base.to_world({mapped.x, mapped.y * s.handed, mapped.z}));
+    const Vec3f n = front ? m : -m;
+    if (!(dot(n, front ? s.ng : -s.ng) > 0.0f)) return false;
+    out = n;
+    return true;
+}
+
 /// The shading normal on the viewer's side, the normal map applied.
 template <Features F>
 Vec3f facing_normal(const SurfacePoint& s, const ShaderProgram& program, const ShadeInput& in,
                     const TextureStore* textures, bool front) {
-    const Vec3f plain = front ? s.ns : -s.ns;
+    Vec3f n = front ? s.ns : -s.ns;
     if constexpr (F.textures) {
-        if (program.has_normal_map()) {
-            if (const auto mapped = program.normal(in, textures)) {
-                // The map lives in the frame of the unflipped normal.
-                const Frame base = frame_along(s.ns, s.dpdu);
-                const Vec3f m =
-                    normalize(base.to_world({mapped->x, mapped->y * s.handed, mapped->z}));
-                const Vec3f n = front ? m : -m;
-                if (dot(n, front ? s.ng : -s.ng) > 0.0f) return n;
-            }
-        }
+        if (program.has_normal_map()) map_normal(s, program.normal(in, textures), front, n);
     }
-    return plain;
+    return n;
+}
+
+/// The coat's frame within the shading frame: over a bumpy base the coat is even, or has a normal
+/// map of its own.
+template <Features F>
+Frame coat_frame(const SurfacePoint& s, const ShaderProgram& program, const ShadeInput& in,
+                 const TextureStore* textures, bool front, const Frame& shading, Vec3f wo) {
+    if (!program.has_normal_map() && !program.has_coat_normal_map()) return {};
+    Vec3f n = front ? s.ns : -s.ns;
+    if (program.has_coat_normal_map()) map_normal(s, program.coat_normal(in, textures), front, n);
+    return frame_along(visible_normal(shading.to_local(n), wo), {1, 0, 0});
 }
 
 /// Whether the material's look turns with the texture's frame.
@@ -83,11 +101,11 @@ FacingFrame facing_frame(const SurfacePoint& s, const ShaderProgram& program, co
 /// The lobes of a lane, seen from lobes.wo.
 template <Features F>
 void push_lobes(const ShaderProgram& program, const ShadeInput& in, const TextureStore* textures,
-                bool front, int lane, Lobes<F>& lobes) {
-    if constexpr (F.specular || F.transmission) {
+                const View& view, int lane, Lobes<F>& lobes) {
+    if constexpr (F.specular || kMedia<F>) {
         if (program.facts().specular) {
             return program.with_surface(in, textures, [&](const Surface& surface) {
-                openpbr_lobes(surface, front, lane, lobes);
+                openpbr_lobes(surface, view, lane, lobes);
             });
         }
     }

@@ -130,7 +130,12 @@ private:
             out_[i].radiance += node.weight * program->emission(in, scene_.textures());
         v.frame = facing_frame<F>(v.s, *program, in, scene_.textures(), -node.ray.d);
         lobes_.wo.set(i, v.frame.wo);
-        push_lobes<F>(*program, in, scene_.textures(), v.frame.front, i, lobes_);
+        View view;
+        view.front = v.frame.front;
+        view.walks = false;
+        view.coat = coat_frame<F>(v.s, *program, in, scene_.textures(), v.frame.front,
+                                  v.frame.shading, v.frame.wo);
+        push_lobes<F>(*program, in, scene_.textures(), view, i, lobes_);
         if (node.depth == 0) out_[i].albedo = lobes_.albedo(i);
         out_[i].radiance +=
             node.weight * lobes_.template weight<DiffuseLobe>(i) * scene_.lights().ambient();

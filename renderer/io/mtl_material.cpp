@@ -102,6 +102,9 @@ void Mapper::check() {
     if (has("Pr")) limit("Pr", v_.pr, 0, 1);
     if (has("Pm")) limit("Pm", v_.pm, 0, 1);
     if (has("aniso")) limit("aniso", v_.aniso, 0, 1);
+    if (has("Ps")) limit("Ps", v_.ps, 0, 1);
+    if (has("Pc")) limit("Pc", v_.pc, 0, 1);
+    if (has("Pcr")) limit("Pcr", v_.pcr, 0, 1);
 }
 
 float Mapper::roughness_or(float otherwise) const {
@@ -133,7 +136,7 @@ void Mapper::specular() {
         out_.specular_color.value = {v_.ks[0] / ks, v_.ks[1] / ks, v_.ks[2] / ks};
         out_.specular_color.texture = texture("map_Ks", v_.map_ks);
     }
-    out_.specular_ior = has("Ni") && v_.ni > kLeastBending ? v_.ni : kDefaultIor;
+    out_.specular_ior.value = has("Ni") && v_.ni > kLeastBending ? v_.ni : kDefaultIor;
     out_.specular_roughness.value = roughness_or(0.3f);
     out_.base_metalness.value = v_.pm;
     if (v_.pm > 0 || has("map_Pm")) {
@@ -142,6 +145,9 @@ void Mapper::specular() {
         out_.specular_color = ColorInput{{1, 1, 1}};
     }
     out_.specular_roughness_anisotropy.value = v_.aniso;
+    out_.coat_weight.value = v_.pc;
+    out_.coat_roughness.value = v_.pcr;
+    out_.fuzz_weight.value = v_.ps;
 }
 
 void Mapper::mirror() {
@@ -156,20 +162,21 @@ void Mapper::glass() {
     out_.transmission_weight.value = 1;
     if (has("Tf")) out_.transmission_color.value = v_.tf;
     out_.specular_weight.value = 1;
-    out_.specular_ior = has("Ni") ? v_.ni : kDefaultIor;
+    out_.specular_ior.value = has("Ni") ? v_.ni : kDefaultIor;
     out_.specular_roughness.value = roughness_or(0);
 }
 
 void Mapper::emission() {
     const float peak = max_of(v_.ke);
     if (peak > 0) {
-        out_.emission_luminance.value = peak;
+        out_.emission_luminance.value = peak * kLumensPerWatt;
         out_.emission_color.value = {v_.ke[0] / peak, v_.ke[1] / peak, v_.ke[2] / peak};
     }
     if (has("map_Ke")) {
         out_.emission_color.texture = texture("map_Ke", v_.map_ke);
         if (peak == 0)
-            out_.emission_luminance.value = out_.emission_color.texture >= 0 ? 1.0f : 0.0f;
+            out_.emission_luminance.value =
+                out_.emission_color.texture >= 0 ? kLumensPerWatt : 0.0f;
         if (peak == 0 && has("Ke")) note("Ke", "Ke 0 would hide map_Ke; 1 is used");
     }
     const std::string lower = to_lower(context_->name);
@@ -209,6 +216,11 @@ void Mapper::maps() {
         out_.base_metalness.channel = channel_of(v_.map_pm);
         out_.base_metalness.value =
             out_.base_metalness.texture < 0 ? v_.pm : (v_.pm > 0 ? v_.pm : 1);
+    }
+    if (has("map_Ps")) {
+        out_.fuzz_weight.texture = texture("map_Ps", v_.map_ps);
+        out_.fuzz_weight.channel = channel_of(v_.map_ps);
+        if (out_.fuzz_weight.texture >= 0) out_.fuzz_weight.value = v_.ps > 0 ? v_.ps : 1;
     }
     const bool bump_is_normal = to_lower(v_.bump.file).find("norm") != std::string::npos;
     if (has("bump") && !bump_is_normal) {

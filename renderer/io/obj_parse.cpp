@@ -100,12 +100,16 @@ MtlValues parse_mtl(const std::string& text) {
     out.pr = static_cast<float>(m.roughness);
     out.pm = static_cast<float>(m.metallic);
     out.aniso = static_cast<float>(m.anisotropy);
+    out.ps = static_cast<float>(m.sheen);
+    out.pc = static_cast<float>(m.clearcoat_thickness);
+    out.pcr = static_cast<float>(m.clearcoat_roughness);
     out.map_kd = texture(m.diffuse_texname, m.diffuse_texopt);
     out.map_ks = texture(m.specular_texname, m.specular_texopt);
     out.map_ke = texture(m.emissive_texname, m.emissive_texopt);
     out.map_d = texture(m.alpha_texname, m.alpha_texopt);
     out.map_pr = texture(m.roughness_texname, m.roughness_texopt);
     out.map_pm = texture(m.metallic_texname, m.metallic_texopt);
+    out.map_ps = texture(m.sheen_texname, m.sheen_texopt);
     out.norm = texture(m.normal_texname, m.normal_texopt);
     out.bump = texture(m.bump_texname, m.bump_texopt);
     return out;

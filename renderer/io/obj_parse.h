@@ -47,8 +47,8 @@ struct MtlValues {
     Float3 kd{0, 0, 0}, ks{0, 0, 0}, ke{0, 0, 0}, tf{0, 0, 0}, ka{0, 0, 0};
     float ns = 0, ni = 0, d = 1;
     int illum = 0;
-    float pr = 0, pm = 0, aniso = 0;
-    MtlTexture map_kd, map_ks, map_ke, map_d, map_pr, map_pm, norm, bump;
+    float pr = 0, pm = 0, aniso = 0, ps = 0, pc = 0, pcr = 0;
+    MtlTexture map_kd, map_ks, map_ke, map_d, map_pr, map_pm, map_ps, norm, bump;
 };
 
 /// Parses the lines of one material (without newmtl).

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 
+#include "renderer/api/openpbr_inputs.h"
 #include "renderer/io/nearest_name.h"
 #include "renderer/io/scene_textures.h"
 
@@ -45,8 +46,8 @@ TextureEntry read_image(const Value& value, const KeySet<TextureEntry>& keys, co
     return entry;
 }
 
-Key color_input(const std::string& name, ColorInput MaterialDesc::*member, const std::string& help,
-                const Limits& limits) {
+Key input_row(ColorInput MaterialDesc::*member, const OpenPbrInput& info) {
+    const Limits limits{.low = info.low, .high = info.high, .clamp = true};
     const auto store = [member](void* object, const Value& value, const Key& key,
                                 const ReadContext& at) {
         const auto& target = *static_cast<MaterialTarget*>(object);
@@ -60,12 +61,12 @@ Key color_input(const std::string& name, ColorInput MaterialDesc::*member, const
         }
     };
     const Float3 initial = (MaterialDesc{}.*member).value;
-    return {name, input_form(3, limits, color_texture_keys()), help, store,
+    return {info.name, input_form(3, limits, color_texture_keys()), info.help, store,
             params::json(std::vector<double>(initial.begin(), initial.end()))};
 }
 
-Key scalar_input(const std::string& name, FloatInput MaterialDesc::*member, const std::string& help,
-                 const Limits& limits = kUnit) {
+Key input_row(FloatInput MaterialDesc::*member, const OpenPbrInput& info) {
+    const Limits limits{.low = info.low, .high = info.high};
     const auto store = [member](void* object, const Value& value, const Key& key,
                                 const ReadContext& at) {
         const auto& target = *static_cast<MaterialTarget*>(object);
@@ -79,21 +80,22 @@ Key scalar_input(const std::string& name, FloatInput MaterialDesc::*member, cons
             params::assign(*plain, input.value);
         }
     };
-    return {name, input_form(1, limits, scalar_texture_keys()), help, store,
+    return {info.name, input_form(1, limits, scalar_texture_keys()), info.help, store,
             params::json(double((MaterialDesc{}.*member).value))};
 }
 
-Key normal_input() {
-    const auto store = [](void* object, const Value& value, const Key& key, const ReadContext& at) {
+Key normal_input(const char* name, int MaterialDesc::*texture, float MaterialDesc::*scale,
+                 const char* help) {
+    const auto store = [texture, scale](void* object, const Value& value, const Key& key,
+                                        const ReadContext& at) {
         const auto& target = *static_cast<MaterialTarget*>(object);
         if (!is_image(value)) return report_misfit(value, key.name, describe(key.form), at);
         const TextureEntry entry = read_image(value, normal_texture_keys(), key, at);
-        target.material.geometry_normal = add_texture(value, entry, at, target.reader);
-        target.material.geometry_normal_scale = entry.scale_normal;
+        target.material.*texture = add_texture(value, entry, at, target.reader);
+        target.material.*scale = entry.scale_normal;
     };
     const Form form{.kind = Form::Kind::image, .tables = {&normal_texture_keys().list}};
-    return {"geometry_normal", form, "Tangent-space normal map, OpenGL handedness (green is up).",
-            store};
+    return {name, form, help, store};
 }
 
 /// A row whose member is plain.
@@ -137,48 +139,29 @@ Key unsupported(const std::string& name, int count) {
 
 std::vector<Key> supported_rows() {
     using M = MaterialDesc;
-    return {
-        inherits_row(),
-        scalar_input("base_weight", &M::base_weight, "Amount of the base."),
-        color_input("base_color", &M::base_color, "Colour of the diffuse or metal base.",
-                    kUnitClamped),
-        scalar_input("base_metalness", &M::base_metalness, "0 dielectric, 1 metal."),
-        scalar_input("specular_weight", &M::specular_weight, "Amount of the specular reflection."),
-        color_input("specular_color", &M::specular_color, "Tint of the specular reflection.",
-                    kUnitClamped),
-        scalar_input("specular_roughness", &M::specular_roughness, "0 mirror, 1 dull."),
-        scalar_input("specular_roughness_anisotropy", &M::specular_roughness_anisotropy,
-                     "Stretch of the highlight along the tangent."),
-        plain_row("specular_ior", &M::specular_ior, "Index of refraction.",
-                  {.low = 0.1, .high = 10}),
-        scalar_input("transmission_weight", &M::transmission_weight, "0 opaque, 1 glass."),
-        color_input("transmission_color", &M::transmission_color, "Tint of what passes through.",
-                    kUnitClamped),
-        scalar_input("emission_luminance", &M::emission_luminance, "Emitted radiance, W/m2/sr.",
-                     kAtLeast0),
-        color_input("emission_color", &M::emission_color, "Factor on the emission.", kAtLeast0),
-        scalar_input("geometry_opacity", &M::geometry_opacity, "0 cut out, 1 there."),
-        plain_row("geometry_thin_walled", &M::geometry_thin_walled, "A sheet without an inside."),
-        normal_input(),
-        plain_row("use_vertex_color", &M::use_vertex_color,
-                  "base_color is multiplied by the mesh's colours."),
-    };
+    std::vector<Key> rows{inherits_row()};
+    visit_openpbr(
+        [&](auto member, const OpenPbrInput& info) { rows.push_back(input_row(member, info)); });
+    rows.push_back(
+        plain_row("geometry_thin_walled", &M::geometry_thin_walled, "A sheet without an inside."));
+    rows.push_back(normal_input("geometry_normal", &M::geometry_normal, &M::geometry_normal_scale,
+                                "Tangent-space normal map, OpenGL handedness (green is up)."));
+    rows.push_back(normal_input(
+        "geometry_coat_normal", &M::geometry_coat_normal, &M::geometry_coat_normal_scale,
+        "The coat's own normal map; without it the coat is even over a bumpy base."));
+    rows.push_back(plain_row("dielectric_priority", &M::dielectric_priority,
+                             "Where solids of glass overlap, the higher number is there.",
+                             {.low = -1000, .high = 1000}));
+    rows.push_back(plain_row("use_vertex_color", &M::use_vertex_color,
+                             "base_color is multiplied by the mesh's colours."));
+    return rows;
 }
 
 const KeySet<MaterialTarget>& material_rows() {
     static const KeySet<MaterialTarget> keys = [] {
         KeySet<MaterialTarget> rows{{"material", supported_rows()}};
-        const auto add = [&](int count, std::initializer_list<const char*> names) {
-            for (const char* name : names) rows.list.keys.push_back(unsupported(name, count));
-        };
-        add(1, {"base_diffuse_roughness", "transmission_depth", "transmission_scatter_anisotropy",
-                "transmission_dispersion_scale", "transmission_dispersion_abbe_number",
-                "subsurface_weight", "subsurface_radius", "subsurface_scatter_anisotropy",
-                "coat_weight", "coat_roughness", "coat_roughness_anisotropy", "coat_ior",
-                "coat_darkening", "fuzz_weight", "fuzz_roughness", "thin_film_weight",
-                "thin_film_thickness", "thin_film_ior"});
-        add(3, {"transmission_scatter", "subsurface_color", "subsurface_radius_scale", "coat_color",
-                "fuzz_color", "geometry_tangent", "geometry_coat_normal", "geometry_coat_tangent"});
+        for (const char* name : {"geometry_tangent", "geometry_coat_tangent"})
+            rows.list.keys.push_back(unsupported(name, 3));
         return rows;
     }();
     return keys;

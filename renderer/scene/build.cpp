@@ -93,20 +93,8 @@ private:
                 std::make_unique<TextureStore>(requests, *scene_->colors_, problems_);
         }
         textures_left_out_ = n - requests.size();
-        for (std::size_t i = 0; i < desc_.materials.size(); ++i) {
-            if (used_[i]) say_what_is_simplified(desc_.materials[i]);
-        }
         for (const MaterialDesc& m : desc_.materials)
             scene_->programs_.emplace_back(remapped(m, remap));
-    }
-
-    void say_what_is_simplified(const MaterialDesc& m) {
-        const bool rough = m.specular_roughness.value > 0 || m.specular_roughness.texture >= 0;
-        const bool clear = m.transmission_weight.value > 0 || m.transmission_weight.texture >= 0;
-        if (m.geometry_thin_walled && rough && clear)
-            problems_.warn(m.loc, fmt::format("material '{}': thin walls are rendered smooth, "
-                                              "specular_roughness is not used",
-                                              m.name));
     }
 
     const ColorSpaces& colors() {
@@ -304,6 +292,7 @@ private:
                 continue;
             const ProgramFacts& facts = scene_->programs_[i].facts();
             f.specular |= facts.specular;
+            f.layers |= facts.layers;
             f.transmission |= facts.transmission;
             f.textures |= facts.textured;
             f.vertex_colors |= facts.vertex_color;
@@ -407,6 +396,8 @@ private:
             if (absent) s.left_out.push_back({what, std::move(why)});
         };
         leave(!f.specular, "specular lobes", "every material is Lambertian");
+        leave(!f.layers, "layers",
+              "no material has fuzz, coat, film or a rough or translucent body");
         leave(!f.transmission, "transmission", "no material lets light through");
         leave(!f.textures, "texture look-ups", "no image is read while shading");
         leave(!scene_->textures_, "texture system", "no used material reads an image");

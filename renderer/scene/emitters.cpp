@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "materials/lobe.h"
 #include "renderer/image/image_io.h"
 
 namespace tessera {

@@ -9,6 +9,7 @@ namespace tessera {
 /// A structural type: a value of it is a template argument of the kernels.
 struct Features {
     bool specular = false;      // lobes other than Lambert's
+    bool layers = false;        // fuzz, coat, film, rough or translucent bodies
     bool transmission = false;  // light passes through surfaces
     bool textures = false;      // images are read while shading, normal maps included
     bool vertex_colors = false;
@@ -19,10 +20,10 @@ struct Features {
     constexpr bool operator==(const Features&) const = default;
     /// True if a kernel with these features can render a scene that needs `other`.
     constexpr bool covers(const Features& other) const {
-        return (specular || !other.specular) && (transmission || !other.transmission) &&
-               (textures || !other.textures) && (vertex_colors || !other.vertex_colors) &&
-               (quadrics || !other.quadrics) && (instances || !other.instances) &&
-               (lens || !other.lens);
+        return (specular || !other.specular) && (layers || !other.layers) &&
+               (transmission || !other.transmission) && (textures || !other.textures) &&
+               (vertex_colors || !other.vertex_colors) && (quadrics || !other.quadrics) &&
+               (instances || !other.instances) && (lens || !other.lens);
     }
 };
 
@@ -36,6 +37,7 @@ inline constexpr Features kBasic{};
 inline constexpr Features kSurface{
     .specular = true, .textures = true, .vertex_colors = true, .quadrics = true, .instances = true};
 inline constexpr Features kFull{.specular = true,
+                                .layers = true,
                                 .transmission = true,
                                 .textures = true,
                                 .vertex_colors = true,

@@ -1,5 +1,7 @@
 #include "renderer/scene/hash.h"
 
+#include "renderer/api/openpbr_inputs.h"
+
 #include <xxhash.h>
 
 #include <cstdio>
@@ -49,10 +51,10 @@ public:
         all(t.file, t.color_space, t.wrap_u, t.wrap_v, t.scale, t.offset, t.gain, t.bias);
     }
     void operator()(const MaterialDesc& m) {
-        all(m.name, m.base_weight, m.base_color, m.base_metalness, m.specular_weight,
-            m.specular_color, m.specular_roughness, m.specular_roughness_anisotropy, m.specular_ior,
-            m.transmission_weight, m.transmission_color, m.emission_luminance, m.emission_color,
-            m.geometry_opacity, m.geometry_thin_walled, m.geometry_normal, m.geometry_normal_scale,
+        (*this)(m.name);
+        visit_openpbr([&](auto member, const OpenPbrInput&) { (*this)(m.*member); });
+        all(m.geometry_thin_walled, m.geometry_normal, m.geometry_normal_scale,
+            m.geometry_coat_normal, m.geometry_coat_normal_scale, m.dielectric_priority,
             m.use_vertex_color);
     }
     void operator()(const MeshDesc& m) {

@@ -32,7 +32,7 @@ void plastic_sample(benchmark::State& state) {
         lobes.clear();
         for (int i = 0; i < kLanes; ++i) {
             lobes.wo.set(i, normalize(Vec3f{0.3f, 0.1f, 0.8f}));
-            openpbr_lobes(plastic, true, i, lobes);
+            openpbr_lobes(plastic, View{}, i, lobes);
         }
         lobes.prepare();
         SamplePairs u, c;

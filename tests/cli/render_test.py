@@ -139,20 +139,6 @@ class Options(TesseraTest):
         done = self.expect(0, "render", "s.toml", "-o", "s.exr", "--spp", "1")
         self.assertIn("s.toml:2:1: camera: an orthographic camera has no lens", done.err)
         self.assertIn("the scene has no shapes", done.err)
-        self.write("s.toml", """\
-            tessera = 1
-            [film]
-            resolution = [8, 8]
-            [material.pane]
-            transmission_weight = 1
-            geometry_thin_walled = true
-            [[sphere]]
-            material = "pane"
-            """)
-        done = self.expect(0, "render", "s.toml", "-o", "s.exr", "--spp", "1")
-        self.assertIn("s.toml:4:1: material 'pane': thin walls are rendered smooth", done.err)
-        done = self.expect(0, "render", "s.toml", "-o", "s.exr", "--spp", "1", "--set", "material.pane.specular_roughness=0")
-        self.assertNotIn("thin walls", done.err)
 
     def test_scene_and_output_may_lie_in_other_folders(self):
         for name in ("scene.toml", "triangles.obj", "triangles.mtl"):

@@ -59,7 +59,7 @@ TEST_CASE("closed furnace: radiance is emission over one minus albedo") {
     for (const float albedo : {0.0f, 0.5f, 0.8f}) {
         CAPTURE(albedo);
         MaterialDesc wall = matte(albedo);
-        wall.emission_luminance.value = 0.3f;
+        wall.emission_luminance.value = 0.3f * kLumensPerWatt;
         SceneDesc ball, box;
         add_sphere(ball, {0, 0, 0}, 1, add(ball, wall));
         add_mesh(box, box_mesh({0, 0, 0}, 1, add(box, wall)));
@@ -75,7 +75,7 @@ TEST_CASE("closed furnace: depth limits cut the series where they say") {
     // Limits of n diffuse bounces leave n + 1 terms of emission times albedo^k.
     for (const int depth : {0, 1, 3}) {
         MaterialDesc wall = matte(0.5f);
-        wall.emission_luminance.value = 1;
+        wall.emission_luminance.value = kLumensPerWatt;
         SceneDesc scene;
         add_mesh(scene, box_mesh({0, 0, 0}, 1, add(scene, wall)));
         look(scene, {0.3, -0.2, 0.5}, {0, 0.1, 0}, 70);

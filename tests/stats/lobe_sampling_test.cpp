@@ -132,10 +132,47 @@ std::vector<LobeCase> glass_cases() {
                 const float eta = (turn / 2) % 2 ? ior : 1 / ior;
                 cases.push_back(one_lobe(fmt::format("glass roughness {} anisotropy {} eta {:.3f}",
                                                      roughness, anisotropy, eta),
-                                         RoughGlass{openpbr_ggx(roughness, anisotropy), eta},
+                                         rough_glass(openpbr_ggx(roughness, anisotropy), eta),
                                          angle));
             }
         }
+    }
+    return numbered(cases);
+}
+
+std::vector<LobeCase> layer_cases() {
+    std::vector<LobeCase> cases;
+    for (const double angle : {0.0, 40.0, 75.0, 88.0}) {
+        for (const float roughness : {0.1f, 0.5f, 1.0f}) {
+            const std::string at = fmt::format(" roughness {}", roughness);
+            cases.push_back(one_lobe("eon" + at, EonLobe{Color(0.7f), roughness}, angle));
+            const float cosine = at_degrees(angle).z;
+            cases.push_back(one_lobe("fuzz" + at, FuzzLobe::seen_at(cosine, roughness), angle));
+            const FilmFresnel film{1.5f, 1.3f, 0.4f, 1.0f, 0.0f};
+            cases.push_back(one_lobe(
+                "film" + at,
+                RoughReflection<FilmFresnel>{openpbr_ggx(roughness, 0.4f), film, Color(0.1f)},
+                angle));
+            cases.push_back(one_lobe(
+                "film on glass" + at,
+                RoughGlass<FilmFresnel>{
+                    {{film, Color(1.0f), Color(1.0f)}, openpbr_ggx(roughness, 0.0f), 1.0f}},
+                angle));
+            cases.push_back(one_lobe(
+                "sheet" + at,
+                RoughSheet<DielectricFresnel>{
+                    {{{1.5f}, Color(1.0f), Color(1.0f)}, openpbr_ggx(roughness, 0.4f), 1.0f}},
+                angle));
+            const Frame tilted(normalize(Vec3f{0.2f, 0.1f, 1.0f}));
+            const Vec3f wo = at_degrees(angle);
+            if (tilted.to_local(wo).z > 0.0f)
+                cases.push_back(
+                    one_lobe("coat" + at,
+                             Framed<RoughReflection<DielectricFresnel>>{
+                                 {openpbr_ggx(roughness, 0.0f), {1.6f}, Color(0.1f)}, tilted},
+                             angle));
+        }
+        cases.push_back(one_lobe("diffuse transmission", DiffuseTransmission{}, angle));
     }
     return numbered(cases);
 }
@@ -152,6 +189,10 @@ std::vector<LobeCase> surface_cases() {
                     p.transmission_weight = transmission;
                     p.specular_roughness = roughness;
                     p.specular_roughness_anisotropy = 0.3f;
+                    p.coat_weight = angle > 50 ? 0.7f : 0.0f;
+                    p.coat_roughness = 0.2f;
+                    p.fuzz_weight = roughness > 0.5f ? 0.5f : 0.0f;
+                    p.base_diffuse_roughness = roughness;
                     LobeCase c;
                     c.name =
                         fmt::format("openpbr metalness {} transmission {} roughness {} wo {} deg",
@@ -170,6 +211,9 @@ std::vector<LobeCase> surface_cases() {
 TEST_CASE("reflection lobes: directions are made with the density that eval gives") {
     check_chi_square(reflection_cases());
 }
+TEST_CASE("layers: directions are made with the density that eval gives") {
+    check_chi_square(layer_cases());
+}
 TEST_CASE("rough glass: directions are made with the density that eval gives") {
     check_chi_square(glass_cases());
 }
@@ -182,6 +226,7 @@ TEST_CASE("openpbr: directions of all lobes together are made with the density t
 TEST_CASE("reflection lobes: a sample's weight is value over density") {
     check_weights(reflection_cases(), 2e-3);
 }
+TEST_CASE("layers: a sample's weight is value over density") { check_weights(layer_cases(), 2e-3); }
 TEST_CASE("rough glass: a sample's weight is value over density") {
     check_weights(glass_cases(), 2e-3);
 }

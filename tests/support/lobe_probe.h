@@ -8,6 +8,16 @@
 
 namespace tessera {
 
+inline RoughGlass<DielectricFresnel> rough_glass(const Ggx& ggx, float eta) {
+    return {{{{eta}, Color(1.0f), Color(1.0f)}, ggx, 1.0f}};
+}
+inline SmoothGlass<DielectricFresnel> smooth_glass(float eta) {
+    return {{{eta}, Color(1.0f), Color(1.0f)}};
+}
+inline SmoothSheet<DielectricFresnel> smooth_sheet(float eta) {
+    return {{{eta}, Color(1.0f), Color(1.0f)}};
+}
+
 struct Drawn {
     Vec3f wi;
     Color weight;
@@ -25,11 +35,14 @@ public:
         lobes_.push(0, model, Color(1.0f));
         lobes_.prepare();
     }
-    LobeProbe(const SurfaceParams& p, Vec3f wo, bool front) {
+    LobeProbe(const Surface& surface, Vec3f wo, bool front) {
         lobes_.wo.set(0, wo);
-        openpbr_lobes(Surface(p), front, 0, lobes_);
+        View view;
+        view.front = front;
+        openpbr_lobes(surface, view, 0, lobes_);
         lobes_.prepare();
     }
+    LobeProbe(const SurfaceParams& p, Vec3f wo, bool front) : LobeProbe(Surface(p), wo, front) {}
 
     bool has_extended_part() const { return (lobes_.extended() & 1u) != 0; }
     Vec3f wo() const { return lobes_.wo[0]; }

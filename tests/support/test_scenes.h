@@ -27,14 +27,14 @@ inline MaterialDesc glass(float roughness, float ior = 1.5f) {
     MaterialDesc m;
     m.transmission_weight.value = 1;
     m.specular_roughness.value = roughness;
-    m.specular_ior = ior;
+    m.specular_ior.value = ior;
     return m;
 }
 
 /// Black but for the light it sends out.
 inline MaterialDesc glowing(float radiance) {
     MaterialDesc m = matte(0);
-    m.emission_luminance.value = radiance;
+    m.emission_luminance.value = radiance * kLumensPerWatt;
     return m;
 }
 

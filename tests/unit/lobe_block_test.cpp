@@ -47,7 +47,9 @@ TEST_CASE("lobes: a lane's sample and value do not depend on the lanes asked for
         lobes.clear();
         for (int i = 0; i < kLanes; ++i) {
             lobes.wo.set(i, upper(n));
-            openpbr_lobes(Surface(any_surface(n)), n.unit() < 0.7f, i, lobes);
+            View view;
+            view.front = n.unit() < 0.7f;
+            openpbr_lobes(Surface(any_surface(n)), view, i, lobes);
             wi.set(i, Vec3f(n.direction()));
             u.x[i] = n.unit(), u.y[i] = n.unit();
             choice[i] = n.unit();
@@ -93,8 +95,8 @@ TEST_CASE("lobes: a kernel without glass gives the bits of the one that has it")
             const Vec3f wo = upper(n);
             all.wo.set(i, wo);
             opaque.wo.set(i, wo);
-            openpbr_lobes(Surface(p), true, i, all);
-            openpbr_lobes(Surface(p), true, i, opaque);
+            openpbr_lobes(Surface(p), View{}, i, all);
+            openpbr_lobes(Surface(p), View{}, i, opaque);
             u.x[i] = n.unit(), u.y[i] = n.unit();
             choice[i] = n.unit();
         }
@@ -116,7 +118,7 @@ TEST_CASE("lobes: what was pushed before is gone after clear, and weights of not
     AllLobes lobes;
     lobes.wo.set(3, {0, 0, 1});
     lobes.push(3, DiffuseLobe{}, Color(0.5f));
-    lobes.push(3, SmoothGlass{}, Color(0.5f));
+    lobes.push(3, SmoothReflection<MetalFresnel>{}, Color(0.5f));
     CHECK(lobes.extended() == 8u);
     CHECK(lobes.smooth() == 8u);
     CHECK(lobes.albedo(3).x == doctest::Approx(1));

@@ -1,0 +1,51 @@
+#pragma once
+// A surface's parameters with what follows from them whatever they are seen from: what a material
+// that does not vary computes once.
+
+#include <memory>
+#include <optional>
+
+#include "materials/energy.h"
+#include "materials/ggx.h"
+#include "materials/surface/params.h"
+
+namespace tessera {
+
+/// Roughness to the two GGX alphas. OpenPBR 1.1, "Microfacet model".
+Ggx openpbr_ggx(float roughness, float anisotropy);
+
+/// Energy of rough boundaries along the viewing cosine; those that are there replace the tables.
+struct SurfaceCurves {
+    std::optional<AlbedoCurve> boundary, metal, coat, glass_outside, glass_inside;
+};
+
+struct Surface {
+    SurfaceParams p;
+    Ggx ggx;  // of the base; a rough coat blurs what lies below it
+    Ggx coat_ggx;
+    float ior = 1;              // specular_weight included
+    float boundary_eta = 1;     // of the opaque base's boundary, always entered from outside: >= 1
+    float coat_reflection = 0;  // internal diffuse reflectance of the coat: the base's darkening
+    Color below_coat{0.0f};     // albedo of what lies below the coat, roughly
+    const SurfaceCurves* curves = nullptr;
+
+    explicit Surface(const SurfaceParams& params);
+
+    /// The curves that lobes of this surface can ask for.
+    SurfaceCurves make_curves() const;
+
+    float boundary_albedo(float cos_o) const;
+    float metal_albedo(float cos_o) const;
+    float coat_albedo(float cos_o) const;
+    /// eta: beyond over here.
+    float glass_albedo_for(float cos_o, float eta) const;
+};
+
+/// A boundary is looked through undisturbed where the two indices agree; the half vector is
+/// undefined there.
+inline constexpr float kSameIndex = 1e-4f;
+
+inline bool is_smooth(const Ggx& ggx) { return std::max(ggx.ax, ggx.ay) < kMinAlpha; }
+inline float mean_alpha(const Ggx& ggx) { return std::sqrt(ggx.ax * ggx.ay); }
+
+}  // namespace tessera
