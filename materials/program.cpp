@@ -57,7 +57,7 @@ Color constant_of(const ColorInput& input) { return color_of(input.value); }
 float constant_of(const FloatInput& input) { return input.value; }
 
 bool zero(const FloatInput& input) { return input.value == 0.0f; }
-bool one(const FloatInput& input) { return input.value == 1.0f && input.texture < 0; }
+bool one(const FloatInput& input) { return input.value == 1.0f && !input.varies(); }
 
 // Calls visit(texture index, use) for every input; Material is MaterialDesc, const or not.
 template <class Material, class Visit>
@@ -69,11 +69,27 @@ void visit_textures(Material& m, Visit visit) {
     });
     visit(m.geometry_normal, TextureUse::data);
     visit(m.geometry_coat_normal, TextureUse::data);
+    for (auto& node : m.nodes)
+        visit(node.texture, node.color ? TextureUse::color : TextureUse::data);
+}
+
+void mark(const MaterialDesc& m, int node, std::vector<bool>& used) {
+    if (node < 0 || used[static_cast<std::size_t>(node)]) return;
+    used[static_cast<std::size_t>(node)] = true;
+    for (const NodeValue& v : m.nodes[static_cast<std::size_t>(node)].inputs) mark(m, v.node, used);
+}
+
+// Nodes that no input asks for lose their images.
+void forget_unused_nodes(MaterialDesc& m) {
+    std::vector<bool> used(m.nodes.size(), false);
+    visit_openpbr([&](auto member, const OpenPbrInput&) { mark(m, (m.*member).node, used); });
+    for (std::size_t i = 0; i < used.size(); ++i)
+        if (!used[i]) m.nodes[i].texture = -1;
 }
 
 template <class... Inputs>
 void drop(Inputs&... inputs) {
-    ((inputs.texture = -1), ...);
+    ((inputs.texture = inputs.node = -1), ...);
 }
 
 // Inputs that cannot reach the result lose their textures: they are then never loaded.
@@ -100,12 +116,13 @@ MaterialDesc folded(MaterialDesc m) {
     }
     if (zero(m.fuzz_weight)) drop(m.fuzz_color, m.fuzz_roughness);
     if (zero(m.thin_film_weight)) drop(m.thin_film_thickness, m.thin_film_ior);
-    const bool same_index = m.specular_ior.value == 1.0f && m.specular_ior.texture < 0;
+    const bool same_index = m.specular_ior.value == 1.0f && !m.specular_ior.varies();
     const bool dielectric_boundary = !zero(m.specular_weight) && !same_index;
     if (!dielectric_boundary && zero(m.base_metalness) && zero(m.transmission_weight)) {
         drop(m.specular_color, m.specular_roughness, m.specular_roughness_anisotropy);
         m.thin_film_weight = {0};
     }
+    forget_unused_nodes(m);
     return m;
 }
 
@@ -145,8 +162,8 @@ ShaderProgram::ShaderProgram(const MaterialDesc& desc) : m_(folded(desc)) {
     facts_.emissive = !zero(m_.emission_luminance);
     facts_.emission_textured = m_.emission_luminance.texture >= 0 || m_.emission_color.texture >= 0;
     facts_.transmission = !zero(m_.transmission_weight);
-    const bool boundary = !zero(m_.specular_weight) &&
-                          (m_.specular_ior.value != 1.0f || m_.specular_ior.texture >= 0);
+    const bool boundary =
+        !zero(m_.specular_weight) && (m_.specular_ior.value != 1.0f || m_.specular_ior.varies());
     facts_.layers = !zero(m_.fuzz_weight) || !zero(m_.coat_weight) || !zero(m_.thin_film_weight) ||
                     !zero(m_.base_diffuse_roughness) || !zero(m_.subsurface_weight);
     facts_.specular = facts_.transmission || !zero(m_.base_metalness) || boundary || facts_.layers;
@@ -162,8 +179,23 @@ ShaderProgram::ShaderProgram(const MaterialDesc& desc) : m_(folded(desc)) {
     SurfaceParams p;
     visit_params([&](auto input, auto param) {
         p.*param = constant_of(m_.*input);
-        if ((m_.*input).texture >= 0) note_varying(input, param);
+        if ((m_.*input).varies()) note_varying(input, param);
     });
+    for (const Varying& v : varying_) {
+        // A graph that comes to a constant is one.
+        if (!v.wired || v.wire.op >= 0) continue;
+        const Vec3f value = min(max(v.wire.constant, Vec3f(v.low)), Vec3f(v.high));
+        if (v.color)
+            p.*v.color_param = value;
+        else
+            p.*v.scalar_param = value.x;
+    }
+    std::erase_if(varying_, [](const Varying& v) { return v.wired && v.wire.op < 0; });
+    facts_.textured |= !graph_.empty();
+    facts_.uv |= graph_.reads_uv();
+    facts_.geometry = graph_.reads_geometry();
+    facts_.vertex_color |= graph_.reads_vertex_color();
+    varies_ = !varying_.empty() || m_.use_vertex_color;
     p.thin_walled = m_.geometry_thin_walled;
     constant_ = Surface(p);
     transmission_ = transmission_medium(p);
@@ -173,7 +205,7 @@ ShaderProgram::ShaderProgram(const MaterialDesc& desc) : m_(folded(desc)) {
          {&m_.specular_roughness, &m_.specular_roughness_anisotropy, &m_.specular_weight,
           &m_.specular_ior, &m_.coat_weight, &m_.coat_roughness, &m_.coat_roughness_anisotropy,
           &m_.coat_ior})
-        same_boundaries &= input->texture < 0;
+        same_boundaries &= !input->varies();
     if (same_boundaries && facts_.specular) {
         curves_ = std::make_shared<SurfaceCurves>(constant_.make_curves());
         constant_.curves = curves_.get();
@@ -182,43 +214,57 @@ ShaderProgram::ShaderProgram(const MaterialDesc& desc) : m_(folded(desc)) {
 
 void ShaderProgram::note_varying(ColorInput MaterialDesc::*input, Color SurfaceParams::*param) {
     const auto [low, high] = limits_of(input);
-    varying_.push_back({.color = input, .color_param = param, .low = low, .high = high});
+    add_varying({.color = input, .color_param = param, .low = low, .high = high}, (m_.*input).node,
+                (m_.*input).output);
 }
 
 void ShaderProgram::note_varying(FloatInput MaterialDesc::*input, float SurfaceParams::*param) {
     const auto [low, high] = limits_of(input);
-    varying_.push_back({.scalar = input, .scalar_param = param, .low = low, .high = high});
+    add_varying({.scalar = input, .scalar_param = param, .low = low, .high = high},
+                (m_.*input).node, (m_.*input).output);
+}
+
+void ShaderProgram::add_varying(Varying v, int node, int output) {
+    v.wired = node >= 0;
+    if (v.wired) v.wire = graph_.add(m_.nodes, node, output);
+    varying_.push_back(v);
+}
+
+SurfaceParams ShaderProgram::params(const ShadeInput& in,
+                                    const TextureStore* store) const noexcept {
+    SurfaceParams p = constant_.p;
+    GraphRun run(graph_, in, store);
+    for (const Varying& v : varying_) {
+        if (v.color) {
+            const Color c = v.wired ? run.value(v.wire) : read(m_.*v.color, in, store);
+            p.*v.color_param = min(max(c, Color(v.low)), Color(v.high));
+        } else {
+            const float x = v.wired ? run.value(v.wire).x : read(m_.*v.scalar, in, store);
+            p.*v.scalar_param = std::clamp(x, v.low, v.high);
+        }
+    }
+    if (m_.use_vertex_color) p.base_color *= in.vertex_color;
+    return p;
 }
 
 Surface ShaderProgram::varied(const ShadeInput& in, const TextureStore* store) const noexcept {
-    SurfaceParams p = constant_.p;
-    for (const Varying& v : varying_) {
-        if (v.color)
-            p.*v.color_param = min(max(read(m_.*v.color, in, store), Color(v.low)), Color(v.high));
-        else
-            p.*v.scalar_param = std::clamp(read(m_.*v.scalar, in, store), v.low, v.high);
-    }
-    if (facts_.vertex_color) p.base_color *= in.vertex_color;
-    Surface s(p);
+    Surface s(params(in, store));
     s.curves = constant_.curves;
     return s;
 }
 
 Medium ShaderProgram::transmission(const ShadeInput& in, const TextureStore* store) const noexcept {
-    return varying_.empty() ? transmission_ : transmission_medium(varied(in, store).p);
+    return varying_.empty() ? transmission_ : transmission_medium(params(in, store));
 }
 
 Medium ShaderProgram::subsurface(const ShadeInput& in, const TextureStore* store) const noexcept {
-    return varying_.empty() ? subsurface_ : subsurface_medium(varied(in, store).p);
+    return varying_.empty() ? subsurface_ : subsurface_medium(params(in, store));
 }
 
 Color ShaderProgram::base_color(const ShadeInput& in, const TextureStore* store) const noexcept {
-    Color c = constant_.p.base_color * constant_.p.base_weight;
-    if (m_.base_color.texture >= 0 || m_.base_weight.texture >= 0) {
-        c = read(m_.base_color, in, store) * read(m_.base_weight, in, store);
-        c = min(max(c, Color(0.0f)), Color(1.0f));
-    }
-    return facts_.vertex_color ? c * in.vertex_color : c;
+    if (!varies_) return constant_.p.base_color * constant_.p.base_weight;
+    const SurfaceParams p = params(in, store);
+    return p.base_color * p.base_weight;
 }
 
 Color ShaderProgram::emission(const ShadeInput& in, const TextureStore* store) const noexcept {

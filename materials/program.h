@@ -7,7 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "materials/graph.h"
 #include "materials/medium.h"
+#include "materials/shade_input.h"
 #include "materials/surface/surface.h"
 #include "renderer/api/scene_desc.h"
 #include "renderer/image/texture.h"
@@ -29,14 +31,8 @@ struct ProgramFacts {
     bool textured = false;  // reads an image while shading
     bool uv = false;        // reads texture coordinates
     bool tangent = false;   // reads dpdu
+    bool geometry = false;  // reads position, normal or instance
     bool vertex_color = false;
-};
-
-/// What a program may ask of the point it shades.
-struct ShadeInput {
-    Vec2f uv;
-    float uv_width = 0;  // footprint in uv units
-    Color vertex_color{1.0f};
 };
 
 class ShaderProgram {
@@ -50,7 +46,7 @@ public:
     /// null if nothing is textured.
     template <class Use>
     auto with_surface(const ShadeInput& in, const TextureStore* store, Use use) const noexcept {
-        if (facts_.textured || facts_.vertex_color) return use(varied(in, store));
+        if (varies_) return use(varied(in, store));
         return use(constant_);
     }
     /// surface().base_color alone: all that a Lambertian surface has.
@@ -71,6 +67,7 @@ public:
     /// Normals in the tangent frame from the normal maps, which must be there.
     Vec3f normal(const ShadeInput& in, const TextureStore* store) const noexcept;
     Vec3f coat_normal(const ShadeInput& in, const TextureStore* store) const noexcept;
+    const Graph& graph() const noexcept { return graph_; }
     /// Parameters that do not vary; what does is as if its images were white.
     const SurfaceParams& constant() const noexcept { return constant_.p; }
     /// What fills a body of it, taken at a point of its surface.
@@ -79,16 +76,21 @@ public:
     int dielectric_priority() const noexcept { return m_.dielectric_priority; }
 
 private:
-    /// An input that has an image, and where its value goes; one of the two kinds is there.
+    /// An input that has an image or a node, and where its value goes; one of the two kinds is
+    /// there.
     struct Varying {
         ColorInput MaterialDesc::*color = nullptr;
         Color SurfaceParams::*color_param = nullptr;
         FloatInput MaterialDesc::*scalar = nullptr;
         float SurfaceParams::*scalar_param = nullptr;
         float low = 0, high = 1;
+        Wire wire = {};
+        bool wired = false;
     };
     void note_varying(ColorInput MaterialDesc::*input, Color SurfaceParams::*param);
     void note_varying(FloatInput MaterialDesc::*input, float SurfaceParams::*param);
+    void add_varying(Varying v, int node, int output);
+    SurfaceParams params(const ShadeInput& in, const TextureStore* store) const noexcept;
     Surface varied(const ShadeInput& in, const TextureStore* store) const noexcept;
     Vec3f mapped_normal(int texture, float scale, const ShadeInput& in,
                         const TextureStore* store) const noexcept;
@@ -96,6 +98,8 @@ private:
     MaterialDesc m_;
     Surface constant_{SurfaceParams()};  // what does not vary
     std::vector<Varying> varying_;
+    Graph graph_;
+    bool varies_ = false;
     Medium transmission_, subsurface_;  // constant_'s
     ProgramFacts facts_;
     std::shared_ptr<const SurfaceCurves> curves_;  // shared: programs are copied into place

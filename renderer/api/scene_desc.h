@@ -49,6 +49,8 @@ enum class Channel : std::uint8_t { automatic, r, g, b, a, luminance };
 struct ColorInput {
     Float3 value{0, 0, 0};
     int texture = -1;
+    int node = -1, output = 0;  // of the material's nodes, in place of a texture
+    bool varies() const { return texture >= 0 || node >= 0; }
     bool operator==(const ColorInput&) const = default;
 };
 
@@ -58,7 +60,29 @@ struct FloatInput {
     int texture = -1;
     Channel channel = Channel::automatic;
     bool invert = false;  // 1 - texture, before the product
+    int node = -1, output = 0;
+    bool varies() const { return texture >= 0 || node >= 0; }
     bool operator==(const FloatInput&) const = default;
+};
+
+/// What an input of a node is given: a value (a number stands in all three places), or an output of
+/// another node: 0 the main one, k the k-th of those beside it.
+struct NodeValue {
+    Float3 value{0, 0, 0};
+    int node = -1, output = 0;
+    bool operator==(const NodeValue&) const = default;
+};
+
+/// A node of a material's graph; kNodes[type] of node_table.h says what it is. Nodes do not go in
+/// circles. inputs stand in the table's order; one without a value of its own is not `given`.
+struct NodeDesc {
+    std::string name;
+    SourceLoc loc;
+    int type = 0;
+    std::vector<NodeValue> inputs;
+    std::vector<bool> given;
+    int texture = -1;   // of an image
+    bool color = true;  // the image is one of colours, not of data
 };
 
 /// OpenPBR Surface 1.1 with its own names, units and defaults.
@@ -115,6 +139,8 @@ struct MaterialDesc {
     float geometry_normal_scale = 1;
     int geometry_coat_normal = -1;  // the coat's own; none: the surface's, unmapped
     float geometry_coat_normal_scale = 1;
+
+    std::vector<NodeDesc> nodes;  // what inputs refer to
 
     int dielectric_priority = 0;    // of nested glass the higher number fills the overlap
     bool use_vertex_color = false;  // base_color is multiplied by the mesh's vertex colours

@@ -102,6 +102,7 @@ enum class PlacedKind : std::uint8_t { mesh, sphere, disc };
 /// coordinates are the scene's) or through an Embree instance.
 struct Placement {
     Affinef to_world;
+    Affinef to_object;           // from the scene to the coordinates of the shape's file
     std::uint32_t shape = 0;     // index among the shapes of its kind
     std::int32_t material = -1;  // replaces the shape's materials
     std::int32_t light = -1;     // the light that this shape is the body of

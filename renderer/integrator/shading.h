@@ -128,6 +128,16 @@ ShadeInput shade_input(const Scene& scene, const ShaderProgram* program, const H
         }
     }
     if constexpr (F.vertex_colors) in.vertex_color = s.vertex_color;
+    if constexpr (F.textures) {
+        if (program && program->facts().geometry) {
+            in.p_object = scene.geometry().placements[s.placement].to_object.point(s.p);
+            in.p_world = Vec3f(Vec3d(s.p) + scene.origin());
+            in.n = dot(s.ns, d) <= 0.0f ? s.ns : -s.ns;
+            in.facing = std::fabs(dot(s.ns, d));
+            in.p_width = cone_width / std::max(std::sqrt(std::fabs(dot(s.ng, d))), 0.2f);
+            in.instance = s.placement;
+        }
+    }
     return in;
 }
 

@@ -186,6 +186,7 @@ std::string describe(const Form& form) {
             return choices_text(form.choices);
         case Kind::table:
         case Kind::named_tables:
+        case Kind::free_tables:
             return "a table";
         case Kind::tables:
             return "tables ([[...]])";

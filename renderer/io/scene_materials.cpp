@@ -3,6 +3,7 @@
 
 #include "renderer/api/openpbr_inputs.h"
 #include "renderer/io/nearest_name.h"
+#include "renderer/io/scene_nodes.h"
 #include "renderer/io/scene_textures.h"
 
 namespace tessera {
@@ -14,7 +15,40 @@ constexpr int kMaxInheritance = 64;
 struct MaterialTarget {
     MaterialDesc& material;
     SceneReader& reader;
+    NodeReader& nodes;
 };
+
+// What light sampling looks up without a hit is read from images only.
+template <class Input>
+bool takes_nodes(Input MaterialDesc::*member) {
+    using M = MaterialDesc;
+    if constexpr (std::is_same_v<Input, FloatInput>)
+        return member != &M::emission_luminance && member != &M::geometry_opacity;
+    else
+        return member != &M::emission_color;
+}
+
+template <class Input>
+void read_graph(Input MaterialDesc::*member, const Value& value, const Key& key,
+                const ReadContext& at, const MaterialTarget& target) {
+    if (!takes_nodes(member)) {
+        at.problems.error(value.loc,
+                          at.subject + ": " + key.name + " takes numbers and images, no nodes");
+        return;
+    }
+    constexpr bool kScalar = std::is_same_v<Input, FloatInput>;
+    const auto node =
+        target.nodes.read(value, kScalar ? NodeType::scalar : NodeType::color, key.name, at);
+    if (!node) return;
+    Input& input = target.material.*member;
+    input = {};
+    if constexpr (kScalar)
+        input.value = node->node >= 0 ? 1.0f : node->value[0];
+    else
+        input.value = node->node >= 0 ? Float3{1, 1, 1} : node->value;
+    input.node = node->node;
+    input.output = node->output;
+}
 
 bool is_image(const Value& value) { return value.table() != nullptr; }
 
@@ -52,7 +86,9 @@ Key input_row(ColorInput MaterialDesc::*member, const OpenPbrInput& info) {
                                 const ReadContext& at) {
         const auto& target = *static_cast<MaterialTarget*>(object);
         ColorInput& input = target.material.*member;
-        if (is_image(value)) {
+        if (NodeReader::is_graph(value)) {
+            read_graph(member, value, key, at, target);
+        } else if (is_image(value)) {
             const TextureEntry entry = read_image(value, color_texture_keys(), key, at);
             input = {entry.tint, add_texture(value, entry, at, target.reader)};
         } else if (const auto plain = plain_input(value, key, at)) {
@@ -71,7 +107,9 @@ Key input_row(FloatInput MaterialDesc::*member, const OpenPbrInput& info) {
                                 const ReadContext& at) {
         const auto& target = *static_cast<MaterialTarget*>(object);
         FloatInput& input = target.material.*member;
-        if (is_image(value)) {
+        if (NodeReader::is_graph(value)) {
+            read_graph(member, value, key, at, target);
+        } else if (is_image(value)) {
             const TextureEntry entry = read_image(value, scalar_texture_keys(), key, at);
             const int texture = add_texture(value, entry, at, target.reader);
             input = {entry.factor, texture, entry.channel, entry.invert};
@@ -118,6 +156,16 @@ Key inherits_row() {
             "Starts from this material; its own name: from the OBJ library's of that name.", store};
 }
 
+/// Nodes by name are read where something refers to them.
+Key nodes_row() {
+    const auto store = [](void*, const Value& value, const Key& key, const ReadContext& at) {
+        if (!value.table())
+            report_misfit(value, key.name, "tables named [material.NAME.node.X]", at);
+    };
+    const Form form{.kind = Form::Kind::free_tables};
+    return {"node", form, "Nodes of the material's graph, by name (docs/nodes.md).", store};
+}
+
 /// An OpenPBR parameter of the standard that has no meaning here yet.
 Key unsupported(const std::string& name, int count) {
     const auto store = [](void* object, const Value& value, const Key& key, const ReadContext& at) {
@@ -139,7 +187,7 @@ Key unsupported(const std::string& name, int count) {
 
 std::vector<Key> supported_rows() {
     using M = MaterialDesc;
-    std::vector<Key> rows{inherits_row()};
+    std::vector<Key> rows{inherits_row(), nodes_row()};
     visit_openpbr(
         [&](auto member, const OpenPbrInput& info) { rows.push_back(input_row(member, info)); });
     rows.push_back(
@@ -189,7 +237,8 @@ private:
         MaterialDesc material = inherited(name, table, depth, at);
         material.name = name;
         material.loc = table.loc;
-        MaterialTarget target{material, reader_};
+        NodeReader nodes(material, reader_, table.find("node"));
+        MaterialTarget target{material, reader_, nodes};
         read_keys(table, material_rows(), target, at);
         put(name, std::move(material), table.find("inherits") != nullptr);
         done_.insert(name);

@@ -146,10 +146,14 @@ private:
                     .add("type", "\"object\"")
                     .add("additionalProperties", one_of(form.tables))
                     .text();
+            case Kind::free_tables:
+                return R"({"type":"object","additionalProperties":{"type":"object"}})";
             case Kind::input: {
                 std::vector<std::string> ways{number_schema(form)};
                 if (form.count > 1) ways.push_back(list_schema(ways[0], form.count));
                 ways.push_back(reference(*form.tables[0]));
+                for (const char* key : {"type", "node", "layers"})
+                    ways.push_back(std::string(R"({"type":"object","required":[")") + key + "\"]}");
                 return Object().add("anyOf", array(ways)).text();
             }
         }

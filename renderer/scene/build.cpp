@@ -146,6 +146,7 @@ private:
         for (const FlatInstance& i : instances_) {
             Placement placed;
             placed.material = i.material;
+            placed.to_object = Affinef(inverse(translation(-scene_->origin_) * i.to_world));
             ShapeUse& use = uses[{i.kind, i.index}];
             place_shape(i, use, placed);
             add_placement(placed);

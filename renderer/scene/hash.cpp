@@ -45,8 +45,15 @@ public:
         ((*this)(v), ...);
     }
 
-    void operator()(const ColorInput& c) { all(c.value, c.texture); }
-    void operator()(const FloatInput& f) { all(f.value, f.texture, f.channel, f.invert); }
+    void operator()(const ColorInput& c) { all(c.value, c.texture, c.node, c.output); }
+    void operator()(const FloatInput& f) {
+        all(f.value, f.texture, f.channel, f.invert, f.node, f.output);
+    }
+    void operator()(const NodeValue& v) { all(v.value, v.node, v.output); }
+    void operator()(const NodeDesc& n) {
+        all(n.type, n.inputs, n.texture, n.color);
+        for (const bool given : n.given) (*this)(given);
+    }
     void operator()(const TextureDesc& t) {
         all(t.file, t.color_space, t.wrap_u, t.wrap_v, t.scale, t.offset, t.gain, t.bias);
     }
@@ -54,7 +61,7 @@ public:
         (*this)(m.name);
         visit_openpbr([&](auto member, const OpenPbrInput&) { (*this)(m.*member); });
         all(m.geometry_thin_walled, m.geometry_normal, m.geometry_normal_scale,
-            m.geometry_coat_normal, m.geometry_coat_normal_scale, m.dielectric_priority,
+            m.geometry_coat_normal, m.geometry_coat_normal_scale, m.nodes, m.dielectric_priority,
             m.use_vertex_color);
     }
     void operator()(const MeshDesc& m) {

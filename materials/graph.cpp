@@ -1,0 +1,210 @@
+#include "materials/graph.h"
+
+#include <cmath>
+
+#include "renderer/core/sampler.h"
+
+namespace tessera {
+namespace {
+
+bool reads_point(NodeOp op) {
+    switch (op) {
+        case NodeOp::texcoord:
+        case NodeOp::position:
+        case NodeOp::normal:
+        case NodeOp::geomcolor:
+        case NodeOp::facingratio:
+        case NodeOp::random:
+        case NodeOp::image:
+        case NodeOp::triplanar:
+            return true;
+        default:
+            return false;
+    }
+}
+
+bool same(const Wire& a, const Wire& b) {
+    return a.op == b.op && a.output == b.output && (a.op >= 0 || a.constant == b.constant);
+}
+
+bool same(const Graph::Op& a, const Graph::Op& b) {
+    if (a.op != b.op || a.texture != b.texture || a.inputs != b.inputs) return false;
+    for (int i = 0; i < a.inputs; ++i)
+        if (!same(a.in[i], b.in[i])) return false;
+    return true;
+}
+
+Vec3f output_of(const NodeResult& r, int output) {
+    return output == 0 ? r.v : Vec3f(r.more[output - 1]);
+}
+
+}  // namespace
+
+// An input for a place that is given none takes the surface's own.
+Wire Graph::wire_of(const std::vector<NodeDesc>& nodes, const NodeDesc& desc, std::size_t input) {
+    const NodeInputInfo& info = kNodes[static_cast<std::size_t>(desc.type)].inputs()[input];
+    if (desc.given[input]) {
+        const NodeValue& v = desc.inputs[input];
+        if (v.node >= 0) return add(nodes, v.node, v.output);
+        return {-1, 0, Vec3f(v.value)};
+    }
+    const bool place = info.name == "texcoord", position = info.name == "position";
+    if (place || position) {
+        Op own;
+        own.op = place ? NodeOp::texcoord : NodeOp::position;
+        own.inputs = place ? 0 : 1;
+        return add_op(desc, own);
+    }
+    const auto& i = info.initial;
+    if (info.type == NodeType::scalar) return {-1, 0, Vec3f(i[0])};
+    return {-1, 0, Vec3f(i)};
+}
+
+Wire Graph::add(const std::vector<NodeDesc>& nodes, int node, int output) {
+    const auto found = known_.find(node);
+    Wire wire;
+    if (found != known_.end()) {
+        wire = found->second;
+    } else {
+        const NodeDesc& desc = nodes[static_cast<std::size_t>(node)];
+        Op op;
+        op.op = kNodes[static_cast<std::size_t>(desc.type)].op;
+        op.color = desc.color;
+        op.texture = desc.texture;
+        op.inputs = static_cast<std::uint8_t>(desc.inputs.size());
+        for (std::size_t i = 0; i < desc.inputs.size(); ++i) op.in[i] = wire_of(nodes, desc, i);
+        wire = add_op(desc, op);
+        known_[node] = wire;
+    }
+    if (wire.op >= 0) wire.output = static_cast<std::uint8_t>(output);
+    return wire;
+}
+
+Wire Graph::add_op(const NodeDesc& desc, const Op& op) {
+    if (!reads_point(op.op)) {
+        NodeResult in[kMaxNodeInputs];
+        bool constant = kNodes[static_cast<std::size_t>(op.op)].outputs().empty();
+        for (int i = 0; i < op.inputs; ++i) {
+            constant &= op.in[i].op < 0;
+            in[i].v = op.in[i].constant;
+        }
+        if (constant) return {-1, 0, run_node(op.op, in).v};
+        // A mix that is decided is what it is decided for.
+        if (op.op == NodeOp::mix && op.in[2].op < 0) {
+            if (op.in[2].constant.x <= 0.0f) return op.in[1];
+            if (op.in[2].constant.x >= 1.0f) return op.in[0];
+        }
+        if (op.op == NodeOp::layer && op.in[2].op < 0) {
+            if (op.in[2].constant.x <= 0.0f) return op.in[0];
+            const bool over = op.in[3].op < 0 && op.in[3].constant.x < 0.5f;
+            if (op.in[2].constant.x >= 1.0f && over) return op.in[1];
+        }
+    }
+    for (std::size_t i = 0; i < ops_.size(); ++i)
+        if (same(ops_[i], op)) return {static_cast<std::int16_t>(i), 0, {}};
+    if (ops_.size() >= kMaxOps)
+        throw Error(ExitCode::scene, desc.loc,
+                    "a material's graph may have " + std::to_string(kMaxOps) + " nodes at most");
+    reads_uv_ |= op.op == NodeOp::texcoord || op.op == NodeOp::image;
+    reads_geometry_ |= op.op == NodeOp::position || op.op == NodeOp::normal ||
+                       op.op == NodeOp::facingratio || op.op == NodeOp::random ||
+                       op.op == NodeOp::triplanar;
+    reads_color_ |= op.op == NodeOp::geomcolor;
+    ops_.push_back(op);
+    return {static_cast<std::int16_t>(ops_.size() - 1), 0, {}};
+}
+
+Vec3f GraphRun::value(const Wire& wire) noexcept {
+    return wire.op < 0 ? wire.constant : result(wire).v;
+}
+
+NodeResult GraphRun::result(const Wire& wire) noexcept {
+    if (wire.op < 0) return {wire.constant, 0.0f, {}};
+    const auto at = static_cast<std::size_t>(wire.op);
+    if (!done_[at]) {
+        results_[at] = run(graph_.ops()[at]);
+        done_[at] = true;
+    }
+    NodeResult r = results_[at];
+    if (wire.output > 0) r = {output_of(r, wire.output), 0.0f, {}};
+    return r;
+}
+
+NodeResult GraphRun::run(const Graph::Op& op) noexcept {
+    const auto texel = [&](float u, float v, float width) {
+        return store_->sample(op.texture, u, v, width);
+    };
+    switch (op.op) {
+        case NodeOp::texcoord:
+            return {{in_.uv.x, in_.uv.y, 0.0f}, in_.uv_width, {}};
+        case NodeOp::position:
+            return {value(op.in[0]).x > 0.5f ? in_.p_world : in_.p_object, in_.p_width, {}};
+        case NodeOp::normal:
+            return {in_.n, 0.0f, {}};
+        case NodeOp::geomcolor:
+            return {in_.vertex_color, 0.0f, {}};
+        case NodeOp::facingratio:
+            return {Vec3f(in_.facing), 0.0f, {}};
+        case NodeOp::random: {
+            const auto seed = static_cast<std::uint32_t>(value(op.in[0]).x * 256.0f + 0.5f);
+            const std::uint32_t h = hash_combine(hash_combine(0x72616e64u, in_.instance), seed);
+            return {Vec3f(static_cast<float>(h >> 8) * 0x1p-24f), 0.0f, {}};
+        }
+        case NodeOp::image: {
+            if (op.texture < 0) return {Vec3f{1, 0, 1}, 0.0f, Vec3f(1.0f)};
+            const NodeResult at = result(op.in[0]);
+            const Vec3f tiling = value(op.in[1]), offset = value(op.in[2]);
+            const float stretch = std::max(std::fabs(tiling.x), std::fabs(tiling.y));
+            const Texel t = texel(at.v.x * tiling.x + offset.x, at.v.y * tiling.y + offset.y,
+                                  at.width * stretch);
+            return {{t[0], t[1], t[2]}, 0.0f, Vec3f(t[3])};
+        }
+        case NodeOp::triplanar: {
+            if (op.texture < 0) return {Vec3f{1, 0, 1}, 0.0f, {}};
+            const NodeResult at = result(op.in[0]);
+            const float scale = value(op.in[1]).x, width = at.width * std::fabs(scale);
+            const float sharp = 1.0f + 15.0f * (1.0f - clamp01(value(op.in[2]).x));
+            const Vec3f p = at.v * scale;
+            Vec3f w{std::pow(std::fabs(in_.n.x), sharp), std::pow(std::fabs(in_.n.y), sharp),
+                    std::pow(std::fabs(in_.n.z), sharp)};
+            w *= 1.0f / std::max(w.x + w.y + w.z, 1e-20f);
+            Vec3f sum;
+            const auto along = [&](float weight, float u, float v) {
+                if (!(weight > 0.0f)) return;
+                const Texel t = texel(u, v, width);
+                sum += Vec3f{t[0], t[1], t[2]} * weight;
+            };
+            along(w.x, p.z, p.y);
+            along(w.y, p.x, p.z);
+            along(w.z, p.x, p.y);
+            return {sum, 0.0f, {}};
+        }
+        // What is decided by one input leaves the others alone.
+        case NodeOp::mix: {
+            const float t = clamp01(value(op.in[2]).x);
+            if (t <= 0.0f) return result(op.in[1]);
+            if (t >= 1.0f) return result(op.in[0]);
+            break;
+        }
+        case NodeOp::layer: {
+            const float mask = clamp01(value(op.in[2]).x);
+            if (mask <= 0.0f) return result(op.in[0]);
+            if (mask >= 1.0f && value(op.in[3]).x < 0.5f) return result(op.in[1]);
+            break;
+        }
+        case NodeOp::ifgreater:
+            return result(value(op.in[0]).x > value(op.in[1]).x ? op.in[2] : op.in[3]);
+        case NodeOp::switch_: {
+            const float which = value(op.in[0]).x;
+            const int at = which >= 4.0f ? 4 : (which >= 0.0f ? static_cast<int>(which) : 0);
+            return result(op.in[1 + at]);
+        }
+        default:
+            break;
+    }
+    NodeResult in[kMaxNodeInputs];
+    for (int i = 0; i < op.inputs; ++i) in[i] = result(op.in[i]);
+    return run_node(op.op, in);
+}
+
+}  // namespace tessera

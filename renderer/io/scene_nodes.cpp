@@ -1,0 +1,406 @@
+#include "renderer/io/scene_nodes.h"
+
+#include <algorithm>
+
+#include "renderer/io/nearest_name.h"
+#include "renderer/io/params.h"
+#include "renderer/io/scene_textures.h"
+
+namespace tessera {
+namespace {
+
+constexpr int kMaxDepth = 512;
+const std::vector<std::string> kLayerKeys{"value", "mask", "opacity", "blend"};
+
+const NodeInfo& info_of(const NodeDesc& node) {
+    return kNodes[static_cast<std::size_t>(node.type)];
+}
+
+std::string name_of(NodeType type) {
+    switch (type) {
+        case NodeType::scalar:
+            return "a number";
+        case NodeType::color:
+            return "a colour";
+        case NodeType::vector2:
+            return "2 numbers";
+        case NodeType::vector3:
+            return "3 numbers";
+        case NodeType::any:
+            break;
+    }
+    return "a value";
+}
+
+// Numbers go everywhere; three numbers are three numbers; else the kinds must agree.
+bool fits(NodeType from, NodeType to) {
+    if (to == NodeType::any || from == NodeType::scalar || from == to) return true;
+    const auto triple = [](NodeType t) { return t == NodeType::color || t == NodeType::vector3; };
+    return triple(from) && (triple(to) || to == NodeType::vector2);
+}
+
+NodeDesc make(NodeOp op, const SourceLoc& loc) {
+    NodeDesc node;
+    node.type = static_cast<int>(op);
+    node.loc = loc;
+    const std::size_t count = kNodes[static_cast<std::size_t>(op)].inputs().size();
+    node.inputs.resize(count);
+    node.given.assign(count, false);
+    return node;
+}
+
+void give(NodeDesc& node, std::size_t input, const NodeValue& value) {
+    node.inputs[input] = value;
+    node.given[input] = true;
+}
+
+}  // namespace
+
+const std::vector<std::string>& blend_modes() {
+    static const std::vector<std::string> modes{
+        "over", "multiply", "screen", "overlay", "add", "subtract", "max", "min", "soft_light"};
+    return modes;
+}
+
+bool NodeReader::is_graph(const Value& value) {
+    return value.find("type") || value.find("node") || value.find("layers");
+}
+
+int NodeReader::push(NodeDesc node) {
+    material_.nodes.push_back(std::move(node));
+    return static_cast<int>(material_.nodes.size()) - 1;
+}
+
+std::optional<NodeValue> NodeReader::read(const Value& value, NodeType wanted,
+                                          const std::string& key, const ReadContext& at) {
+    if (!value.table()) return read_plain(value, wanted, key, at);
+    if (depth_ >= kMaxDepth) {
+        at.problems.error(value.loc, at.subject + ": " + key + ": nodes within nodes within ... " +
+                                         "deeper than 512");
+        return std::nullopt;
+    }
+    ++depth_;
+    const ReadContext inner{at.problems, at.subject + ": " + key, "input"};
+    std::optional<NodeValue> out;
+    if (value.find("layers")) {
+        out = read_layers(value, wanted, inner);
+    } else if (value.find("node")) {
+        out = read_named(value, wanted, inner);
+    } else if (const auto node = read_node(value, wanted, inner)) {
+        out = output_of(*node, value, wanted, inner);
+    }
+    --depth_;
+    return out;
+}
+
+std::optional<NodeValue> NodeReader::read_plain(const Value& value, NodeType wanted,
+                                                const std::string& key, const ReadContext& at) {
+    const int count = wanted == NodeType::vector2 ? 2 : 3;
+    const bool list = value.list() != nullptr;
+    if (list && wanted == NodeType::scalar) {
+        report_misfit(value, key, "a number or a node", at);
+        return std::nullopt;
+    }
+    Key row{key, {.kind = Form::Kind::numbers, .count = count, .or_one = true}, "", nullptr};
+    if (!list) row.form = {.kind = Form::Kind::number};
+    const auto plain = plain_value(value, row, at);
+    if (!plain) return std::nullopt;
+    NodeValue out;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t from = list ? i : 0;
+        out.value[i] = from < plain->numbers.size() ? static_cast<float>(plain->numbers[from]) : 0;
+    }
+    return out;
+}
+
+std::optional<NodeValue> NodeReader::read_named(const Value& table, NodeType wanted,
+                                                const ReadContext& at) {
+    const Value& written = *table.find("node");
+    for (const auto& [key, value] : *table.table()) {
+        if (key != "node" && key != "output") {
+            at.problems.error(
+                value.loc, at.subject + ": beside 'node' stands 'output' only, not '" + key + "'");
+            return std::nullopt;
+        }
+    }
+    if (!written.text()) {
+        report_misfit(written, "node", "a name in quotes", at);
+        return std::nullopt;
+    }
+    const std::string& name = *written.text();
+    const Value* definition = named_ ? named_->find(name) : nullptr;
+    if (!definition) {
+        std::vector<std::string> names;
+        if (named_ && named_->table())
+            for (const auto& [known, value] : *named_->table()) names.push_back(known);
+        at.problems.error(written.loc, at.subject + ": there is no node '" + name + "'" +
+                                           did_you_mean(name, names));
+        return std::nullopt;
+    }
+    const auto known = read_names_.find(name);
+    if (known != read_names_.end())
+        return known->second < 0 ? std::nullopt : output_of(known->second, table, wanted, at);
+    if (!open_names_.insert(name).second) {
+        at.problems.error(written.loc, at.subject + ": node '" + name + "' goes in a circle");
+        return std::nullopt;
+    }
+    const ReadContext own{at.problems, "material '" + material_.name + "': node '" + name + "'",
+                          "input"};
+    std::optional<int> node;
+    if (!definition->table() || !definition->find("type"))
+        own.problems.error(definition->loc, own.subject + ": type is missing");
+    else
+        node = read_node(*definition, NodeType::any, own);
+    open_names_.erase(name);
+    read_names_[name] = node.value_or(-1);
+    return node ? output_of(*node, table, wanted, at) : std::nullopt;
+}
+
+std::optional<int> NodeReader::read_node(const Value& table, NodeType wanted,
+                                         const ReadContext& at) {
+    const Value* type = table.find("type");
+    if (type && !type->text()) {
+        report_misfit(*type, "type", "the name of a node in quotes", at);
+        return std::nullopt;
+    }
+    const std::string name = type ? *type->text() : "image";
+    int index = find_node(name);
+    if (name == "tiledimage") index = find_node("image");
+    if (index < 0) {
+        std::vector<std::string> names;
+        for (const NodeInfo& info : kNodes) names.emplace_back(info.name);
+        at.problems.error(type->loc, at.subject + ": there is no node type '" + name + "'" +
+                                         did_you_mean(name, names));
+        return std::nullopt;
+    }
+    const NodeInfo& info = kNodes[static_cast<std::size_t>(index)];
+    NodeDesc node = make(info.op, table.loc);
+    const bool image = info.op == NodeOp::image || info.op == NodeOp::triplanar;
+    if (image && !read_image(table, wanted, node, at)) return std::nullopt;
+    bool good = true;
+    NodeType widest = NodeType::scalar;
+    for (const auto& [key, value] : *table.table()) {
+        static const std::set<std::string, std::less<>> image_keys{"file", "wrap", "color_space",
+                                                                   "gain", "bias"};
+        if (key == "type" || key == "output" || (image && image_keys.contains(key))) continue;
+        const auto inputs = info.inputs();
+        const auto input = std::find_if(inputs.begin(), inputs.end(),
+                                        [&](const NodeInputInfo& i) { return i.name == key; });
+        if (input == inputs.end()) {
+            std::vector<std::string> names;
+            for (const NodeInputInfo& i : inputs) names.emplace_back(i.name);
+            at.problems.error(value.loc, at.subject + ": node '" + name + "' has no input '" + key +
+                                             "'" + did_you_mean(key, names));
+            good = false;
+            continue;
+        }
+        if (info.op == NodeOp::layer && key == "blend" && value.text()) {
+            const auto& modes = blend_modes();
+            const auto mode = std::find(modes.begin(), modes.end(), *value.text());
+            if (mode == modes.end()) {
+                at.problems.error(value.loc, at.subject + ": there is no blend mode '" +
+                                                 *value.text() + "'" +
+                                                 did_you_mean(*value.text(), modes));
+                good = false;
+                continue;
+            }
+            NodeValue number;
+            number.value.fill(static_cast<float>(mode - modes.begin()));
+            give(node, static_cast<std::size_t>(input - inputs.begin()), number);
+            continue;
+        }
+        const auto given = read(value, input->type, key, at);
+        good &= given.has_value();
+        if (!given) continue;
+        give(node, static_cast<std::size_t>(input - inputs.begin()), *given);
+        if (input->type != NodeType::any) continue;
+        NodeType own = value.list()
+                           ? (value.list()->size() == 2 ? NodeType::vector2 : NodeType::color)
+                           : NodeType::scalar;
+        if (given->node >= 0) own = given->output > 0 ? NodeType::scalar : types_.at(given->node);
+        if (own != NodeType::scalar) widest = own;
+    }
+    if (!good) return std::nullopt;
+    const int at_index = push(std::move(node));
+    types_[at_index] = info.output == NodeType::any ? widest : info.output;
+    return at_index;
+}
+
+bool NodeReader::read_image(const Value& table, NodeType wanted, NodeDesc& node,
+                            const ReadContext& at) {
+    Value own{Table{}, table.loc};
+    Table& keys = std::get<Table>(own.data);
+    for (const char* key : {"file", "wrap", "color_space", "gain", "bias"})
+        if (const Value* value = table.find(key)) keys[key] = *value;
+    TextureEntry entry;
+    read_keys(own, color_texture_keys(), entry, at);
+    if (entry.file.empty()) return false;
+    node.color = wanted != NodeType::scalar;
+    node.texture = add_texture(own, entry, at, reader_);
+    return true;
+}
+
+std::optional<NodeValue> NodeReader::output_of(int node, const Value& table, NodeType wanted,
+                                               const ReadContext& at) {
+    const NodeInfo& info = info_of(material_.nodes[static_cast<std::size_t>(node)]);
+    NodeValue out;
+    out.node = node;
+    NodeType type = types_.at(node);
+    if (const Value* written = table.find("output")) {
+        const auto outputs = info.outputs();
+        const std::string name = written->text() ? *written->text() : "";
+        const auto found = std::find_if(outputs.begin(), outputs.end(),
+                                        [&](const NodeOutputInfo& o) { return o.name == name; });
+        if (found == outputs.end() && name != "out") {
+            std::vector<std::string> names{"out"};
+            for (const NodeOutputInfo& o : outputs) names.emplace_back(o.name);
+            at.problems.error(written->loc, at.subject + ": node '" + std::string(info.name) +
+                                                "' has no output '" + name + "'" +
+                                                did_you_mean(name, names));
+            return std::nullopt;
+        }
+        if (found != outputs.end()) {
+            out.output = static_cast<int>(found - outputs.begin()) + 1;
+            type = NodeType::scalar;
+        }
+    }
+    // An image gives a number where one is wanted: its red.
+    const bool image = info.op == NodeOp::image || info.op == NodeOp::triplanar;
+    if (!fits(type, wanted) && !image) {
+        at.problems.error(table.loc, at.subject + ": node '" + std::string(info.name) + "' gives " +
+                                         name_of(type) + ", wanted is " + name_of(wanted) +
+                                         " (see 'extract', 'luminance', 'combine3')");
+        return std::nullopt;
+    }
+    return out;
+}
+
+std::optional<NodeValue> NodeReader::read_layers(const Value& table, NodeType wanted,
+                                                 const ReadContext& at) {
+    const Value& written = *table.find("layers");
+    for (const auto& [key, value] : *table.table()) {
+        if (key == "layers") continue;
+        at.problems.error(value.loc,
+                          at.subject + ": beside 'layers' nothing stands, not '" + key + "'");
+        return std::nullopt;
+    }
+    if (!written.list() || written.list()->empty()) {
+        report_misfit(written, "layers", "a list of values, the lowest first", at);
+        return std::nullopt;
+    }
+    std::optional<NodeValue> below;
+    std::size_t number = 0;
+    for (const Value& entry : *written.list()) {
+        const std::string name = "layers[" + std::to_string(number++) + "]";
+        const Value* value = entry.table() ? entry.find("value") : nullptr;
+        if (!value) {
+            const auto plain = read(entry, wanted, name, at);
+            if (!plain) return std::nullopt;
+            below = below ? layer(*below, *plain, {{1, 1, 1}}, 0, entry.loc) : *plain;
+            continue;
+        }
+        const ReadContext inner{at.problems, at.subject + ": " + name, "key"};
+        NodeValue mask{{1, 1, 1}};
+        float opacity = 1;
+        int blend = 0;
+        bool good = true;
+        for (const auto& [key, part] : *entry.table()) {
+            if (key == "value") continue;
+            if (key == "mask") {
+                const auto read_mask = read(part, NodeType::scalar, key, inner);
+                good &= read_mask.has_value();
+                if (read_mask) mask = *read_mask;
+            } else if (key == "opacity") {
+                Key row{key, {.kind = Form::Kind::number, .limits = kUnit}, "", nullptr};
+                const auto plain = plain_value(part, row, inner);
+                good &= plain.has_value();
+                if (plain) opacity = static_cast<float>(plain->numbers[0]);
+            } else if (key == "blend") {
+                Key row{key, {.kind = Form::Kind::choice, .choices = blend_modes()}, "", nullptr};
+                const auto plain = plain_value(part, row, inner);
+                good &= plain.has_value();
+                if (plain) blend = plain->choice;
+            } else {
+                at.problems.error(part.loc, inner.subject + ": unknown key '" + key + "'" +
+                                                did_you_mean(key, kLayerKeys));
+                good = false;
+            }
+        }
+        const auto above = read(*value, wanted, "value", inner);
+        if (!above || !good) return std::nullopt;
+        if (opacity < 1) {
+            NodeDesc product = make(NodeOp::multiply, entry.loc);
+            give(product, 0, mask);
+            give(product, 1, {{opacity, opacity, opacity}});
+            mask = {{}, push(std::move(product))};
+            types_[mask.node] = NodeType::scalar;
+        }
+        below = layer(below.value_or(NodeValue{}), *above, mask, blend, entry.loc);
+    }
+    if (below->node >= 0) types_.try_emplace(below->node, wanted);
+    return below;
+}
+
+NodeValue NodeReader::layer(NodeValue below, NodeValue above, NodeValue mask, int blend,
+                            const SourceLoc& loc) {
+    NodeDesc node = make(NodeOp::layer, loc);
+    const auto mode = static_cast<float>(blend);
+    give(node, 0, below);
+    give(node, 1, above);
+    give(node, 2, mask);
+    give(node, 3, {{mode, mode, mode}});
+    const int index = push(std::move(node));
+    types_[index] = NodeType::any;
+    return {{}, index};
+}
+
+int NodeReader::image_node(int texture, bool color) {
+    NodeDesc node = make(NodeOp::image, {});
+    node.texture = texture;
+    node.color = color;
+    const int index = push(std::move(node));
+    types_[index] = color ? NodeType::color : NodeType::scalar;
+    return index;
+}
+
+NodeValue NodeReader::node_of(const ColorInput& input) {
+    if (input.node >= 0) return {{}, input.node, input.output};
+    if (input.texture < 0) return {input.value};
+    NodeDesc product = make(NodeOp::multiply, {});
+    give(product, 0, {{}, image_node(input.texture, true)});
+    give(product, 1, {input.value});
+    const int index = push(std::move(product));
+    types_[index] = NodeType::color;
+    return {{}, index};
+}
+
+NodeValue NodeReader::node_of(const FloatInput& input) {
+    const Float3 value{input.value, input.value, input.value};
+    if (input.node >= 0) return {{}, input.node, input.output};
+    if (input.texture < 0) return {value};
+    NodeValue read{{}, image_node(input.texture, false), input.channel == Channel::a ? 1 : 0};
+    if (input.channel == Channel::g || input.channel == Channel::b) {
+        NodeDesc channel = make(NodeOp::extract, {});
+        give(channel, 0, read);
+        const float which = input.channel == Channel::g ? 1.0f : 2.0f;
+        give(channel, 1, {{which, which, which}});
+        read = {{}, push(std::move(channel))};
+    } else if (input.channel == Channel::luminance) {
+        NodeDesc grey = make(NodeOp::luminance, {});
+        give(grey, 0, read);
+        read = {{}, push(std::move(grey))};
+    }
+    if (input.invert) {
+        NodeDesc inverse = make(NodeOp::invert, {});
+        give(inverse, 0, read);
+        read = {{}, push(std::move(inverse))};
+    }
+    NodeDesc product = make(NodeOp::multiply, {});
+    give(product, 0, read);
+    give(product, 1, {value});
+    const int index = push(std::move(product));
+    types_[index] = NodeType::scalar;
+    return {{}, index};
+}
+
+}  // namespace tessera
