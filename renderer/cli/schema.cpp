@@ -1,9 +1,11 @@
 #include "renderer/io/schema.h"
 
 #include <CLI/CLI.hpp>
+#include <memory>
 
 #include "renderer/cli/commands.h"
 #include "renderer/cli/console.h"
+#include "renderer/io/node_docs.h"
 
 namespace tessera {
 
@@ -11,9 +13,11 @@ void add_schema(CLI::App& app, CommandLine& line) {
     CLI::App* sub = app.add_subcommand(
         "schema", "Print the JSON Schema of scene files (docs/scene.schema.json)");
     sub->group("");  // for those who change the format: not in the help
-    sub->callback([&line] {
-        line.run = [] {
-            print_out(scene_schema_json());
+    const auto nodes = std::make_shared<bool>(false);
+    sub->add_flag("--nodes", *nodes, "The list of nodes in its place (docs/nodes.md)");
+    sub->callback([&line, nodes] {
+        line.run = [nodes] {
+            print_out(*nodes ? nodes_markdown() : scene_schema_json());
             return 0;
         };
     });

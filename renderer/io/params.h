@@ -48,7 +48,7 @@ struct Form {
         named_tables,  // [key.NAME]: each has the keys of tables[0]
         input,         // a number (count 1) or colour (count 3), or an image: tables[0]
         image,         // an image only: tables[0]
-        free_tables,   // [key.NAME] of a form of their own
+        free_tables,   // [key.NAME] or [[key]] of a form of their own
     };
     Kind kind = Kind::number;
     int rows = 1;

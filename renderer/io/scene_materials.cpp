@@ -3,6 +3,7 @@
 
 #include "renderer/api/openpbr_inputs.h"
 #include "renderer/io/nearest_name.h"
+#include "renderer/io/scene_layers.h"
 #include "renderer/io/scene_nodes.h"
 #include "renderer/io/scene_textures.h"
 
@@ -18,16 +19,6 @@ struct MaterialTarget {
     NodeReader& nodes;
 };
 
-// What light sampling looks up without a hit is read from images only.
-template <class Input>
-bool takes_nodes(Input MaterialDesc::*member) {
-    using M = MaterialDesc;
-    if constexpr (std::is_same_v<Input, FloatInput>)
-        return member != &M::emission_luminance && member != &M::geometry_opacity;
-    else
-        return member != &M::emission_color;
-}
-
 template <class Input>
 void read_graph(Input MaterialDesc::*member, const Value& value, const Key& key,
                 const ReadContext& at, const MaterialTarget& target) {
@@ -40,14 +31,7 @@ void read_graph(Input MaterialDesc::*member, const Value& value, const Key& key,
     const auto node =
         target.nodes.read(value, kScalar ? NodeType::scalar : NodeType::color, key.name, at);
     if (!node) return;
-    Input& input = target.material.*member;
-    input = {};
-    if constexpr (kScalar)
-        input.value = node->node >= 0 ? 1.0f : node->value[0];
-    else
-        input.value = node->node >= 0 ? Float3{1, 1, 1} : node->value;
-    input.node = node->node;
-    input.output = node->output;
+    set_input(target.material.*member, *node);
 }
 
 bool is_image(const Value& value) { return value.table() != nullptr; }
@@ -166,6 +150,13 @@ Key nodes_row() {
     return {"node", form, "Nodes of the material's graph, by name (docs/nodes.md).", store};
 }
 
+/// Layers are read when all else is there, to lie on it.
+Key layers_row() {
+    const auto store = [](void*, const Value&, const Key&, const ReadContext&) {};
+    const Form form{.kind = Form::Kind::free_tables};
+    return {"layer", form, "Layers on the material, from the lowest up.", store};
+}
+
 /// An OpenPBR parameter of the standard that has no meaning here yet.
 Key unsupported(const std::string& name, int count) {
     const auto store = [](void* object, const Value& value, const Key& key, const ReadContext& at) {
@@ -187,7 +178,7 @@ Key unsupported(const std::string& name, int count) {
 
 std::vector<Key> supported_rows() {
     using M = MaterialDesc;
-    std::vector<Key> rows{inherits_row(), nodes_row()};
+    std::vector<Key> rows{inherits_row(), nodes_row(), layers_row()};
     visit_openpbr(
         [&](auto member, const OpenPbrInput& info) { rows.push_back(input_row(member, info)); });
     rows.push_back(
@@ -240,6 +231,8 @@ private:
         NodeReader nodes(material, reader_, table.find("node"));
         MaterialTarget target{material, reader_, nodes};
         read_keys(table, material_rows(), target, at);
+        if (const Value* layers = table.find("layer"))
+            read_material_layers(*layers, material, nodes, at);
         put(name, std::move(material), table.find("inherits") != nullptr);
         done_.insert(name);
     }

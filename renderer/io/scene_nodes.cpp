@@ -328,17 +328,20 @@ std::optional<NodeValue> NodeReader::read_layers(const Value& table, NodeType wa
         }
         const auto above = read(*value, wanted, "value", inner);
         if (!above || !good) return std::nullopt;
-        if (opacity < 1) {
-            NodeDesc product = make(NodeOp::multiply, entry.loc);
-            give(product, 0, mask);
-            give(product, 1, {{opacity, opacity, opacity}});
-            mask = {{}, push(std::move(product))};
-            types_[mask.node] = NodeType::scalar;
-        }
+        if (opacity < 1) mask = product(mask, opacity, entry.loc);
         below = layer(below.value_or(NodeValue{}), *above, mask, blend, entry.loc);
     }
     if (below->node >= 0) types_.try_emplace(below->node, wanted);
     return below;
+}
+
+NodeValue NodeReader::product(NodeValue value, float factor, const SourceLoc& loc) {
+    NodeDesc node = make(NodeOp::multiply, loc);
+    give(node, 0, value);
+    give(node, 1, {{factor, factor, factor}});
+    const int index = push(std::move(node));
+    types_[index] = NodeType::any;
+    return {{}, index};
 }
 
 NodeValue NodeReader::layer(NodeValue below, NodeValue above, NodeValue mask, int blend,

@@ -29,6 +29,8 @@ public:
     /// What an input holds now, as something a node can take.
     NodeValue node_of(const ColorInput& input);
     NodeValue node_of(const FloatInput& input);
+    /// value times a number.
+    NodeValue product(NodeValue value, float factor, const SourceLoc& loc);
     /// `above` on `below` by a mask and a blend mode.
     NodeValue layer(NodeValue below, NodeValue above, NodeValue mask, int blend,
                     const SourceLoc& loc);

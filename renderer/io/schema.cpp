@@ -147,7 +147,7 @@ private:
                     .add("additionalProperties", one_of(form.tables))
                     .text();
             case Kind::free_tables:
-                return R"({"type":"object","additionalProperties":{"type":"object"}})";
+                return R"({"type":["object","array"]})";
             case Kind::input: {
                 std::vector<std::string> ways{number_schema(form)};
                 if (form.count > 1) ways.push_back(list_schema(ways[0], form.count));

@@ -2,11 +2,14 @@
 
 #include <doctest/doctest.h>
 
+#include <fstream>
+#include <sstream>
 #include <string>
 
 #include "materials/nodes/blend.h"
 #include "materials/nodes/color_math.h"
 #include "materials/program.h"
+#include "renderer/io/node_docs.h"
 #include "tests/support/scene_folder.h"
 
 namespace tessera::test {
@@ -219,6 +222,33 @@ TEST_CASE("graph: nodes within nodes end somewhere, and too many are an error") 
     const SceneFolder folder;
     const SceneDesc scene = folder.load("[material.a]\nbase_color = " + layers + "] }\n" + nodes);
     CHECK_THROWS_AS(ShaderProgram{material_of(scene, "a")}, Error);
+}
+
+TEST_CASE("graph: layers of a material drive several inputs by one mask") {
+    const SceneFolder folder;
+    const SceneDesc scene = folder.load(
+        "[material.a]\nbase_color = 0.5\nspecular_roughness = 0.2\n"
+        "[[material.a.layer]]\nname = 'dust'\nmask = 0.5\nbase_color = 1\nspecular_roughness = 1\n"
+        "[[material.a.layer]]\nopacity = 0.5\nblend = 'multiply'\nbase_color = [1, 0, 1]\n");
+    const ShaderProgram program(material_of(scene, "a"));
+    CHECK(near(program.constant().base_color, {0.75f, 0.375f, 0.75f}));
+    CHECK(program.constant().specular_roughness == doctest::Approx(0.6));
+    CHECK(program.graph().empty());
+    const auto failure = [&](const std::string& layer) {
+        return folder.failure("[material.a]\n[[material.a.layer]]\n" + layer);
+    };
+    CHECK(failure("ruoghness = 1")
+              .find("s.toml:4:1: material 'a': layer[0]: unknown input "
+                    "'ruoghness' (did you mean 'specular_roughness'?)") != std::string::npos);
+    CHECK(failure("geometry_opacity = 1").find("takes no layers") != std::string::npos);
+    CHECK(failure("opacity = 2").find("opacity is 2") != std::string::npos);
+}
+
+TEST_CASE("nodes: the page in docs is what the table says") {
+    std::ifstream file(std::string(TESSERA_SOURCE_DIR) + "/docs/nodes.md");
+    std::stringstream text;
+    text << file.rdbuf();
+    CHECK(text.str() == nodes_markdown());
 }
 
 TEST_CASE("graph: hostile numbers do no harm") {
