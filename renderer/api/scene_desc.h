@@ -267,13 +267,47 @@ struct LightDesc {
 };
 
 /// Light from all around. With a file: lat-long, y up, u = 0.5 looks along -z at rotate_deg 0.
+/// How a picture shows all directions; automatic: by its shape.
+enum class EnvironmentMap : std::uint8_t {
+    automatic,
+    latlong,
+    cube_cross_horizontal,
+    cube_cross_vertical,
+    cube_strip,
+    mirror_ball,
+    angular,
+};
+
 struct EnvironmentDesc {
     SourceLoc loc;
-    std::string file;          // resolved path; "" = constant
+    std::string file;  // resolved path; "" = constant
+    std::vector<std::string>
+        faces;  // in its place: six files, +x -x +y -y +z -z as seen from inside
+    EnvironmentMap projection = EnvironmentMap::automatic;
     std::string color_space;   // "" = linear working space
     Float3 radiance{1, 1, 1};  // constant, or the factor on the image
     double rotate_deg = 0;     // about +y
     bool visible = true;       // to camera rays
+};
+
+/// A clear sky and its sun, computed. North is -z, east +x.
+struct SkyDesc {
+    SourceLoc loc;
+    double turbidity = 3;  // 1.8 the clearest air, 10 thick haze
+    Float3 ground_albedo{0.2f, 0.2f, 0.2f};
+    double sun_elevation_deg = 45;
+    double sun_azimuth_deg = 135;  // from north by east
+    /// In their place: where and when, UTC.
+    struct PlaceAndTime {
+        double latitude_deg = 0, longitude_deg = 0;
+        int year = 2000, month = 1, day = 1;
+        double hour = 12;
+    };
+    std::optional<PlaceAndTime> when;
+    double sun_angle_deg = 0.533;  // across
+    float intensity = 1;
+    bool sun = true;      // with its disc
+    bool visible = true;  // to camera rays
 };
 
 // ---- camera, film, settings
@@ -340,6 +374,7 @@ struct SceneDesc {
     FilmDesc film;
     RenderDesc render;
     std::optional<EnvironmentDesc> environment;
+    std::optional<SkyDesc> sky;
     std::vector<TextureDesc> textures;
     std::vector<MaterialDesc> materials;
     std::vector<MeshDesc> meshes;

@@ -53,6 +53,7 @@ const KeyList& camera_keys();
 const KeyList& film_keys();
 const KeyList& render_keys();
 const KeyList& environment_keys();
+const KeyList& sky_keys();
 const KeyList& material_keys();
 const KeyList& mesh_keys();
 const KeyList& sphere_keys();

@@ -1,6 +1,7 @@
 #include <array>
 #include <cmath>
 
+#include "renderer/io/scene_environment.h"
 #include "renderer/io/scene_reader.h"
 
 namespace tessera {
@@ -94,40 +95,6 @@ const KeySet<RenderDesc>& render_rows() {
              key("min_depth", &R::min_depth, "No path is ended by chance before this many bounces.",
                  kDepth),
          }}};
-    return keys;
-}
-
-/// The environment as it is written: radiance and scale multiply.
-struct EnvironmentEntry {
-    EnvironmentDesc environment;
-    double scale = 1;
-};
-
-const KeySet<EnvironmentDesc>& environment_part() {
-    using E = EnvironmentDesc;
-    static const KeySet<E> keys{
-        {"environment",
-         {
-             key("file", &E::file, "Latitude-longitude image, y up; its middle looks along -z."),
-             key("radiance", &E::radiance,
-                 "Radiance from everywhere, W/m2/sr; with a file, a factor on the image.",
-                 kAtLeast0),
-             key("rotate_deg", &E::rotate_deg, "Turn about +y."),
-             key("color_space", &E::color_space,
-                 "Colour space of the image; absent: the working space."),
-             key("visible", &E::visible, "Seen by camera rays."),
-         }}};
-    return keys;
-}
-
-const KeySet<EnvironmentEntry>& environment_rows() {
-    static const KeySet<EnvironmentEntry> keys = [] {
-        KeySet<EnvironmentEntry> rows{{"environment", {}}};
-        add_part(rows, environment_part(), &EnvironmentEntry::environment);
-        rows.list.keys.push_back(
-            key("scale", &EnvironmentEntry::scale, "Factor on the radiance.", kAtLeast0));
-        return rows;
-    }();
     return keys;
 }
 
@@ -225,28 +192,6 @@ void read_render(const Value& table, SceneReader& reader) {
     read_keys(table, render_rows(), reader.scene.render, at);
 }
 
-void read_environment(const Value& table, SceneReader& reader) {
-    const ReadContext at{reader.problems, "environment"};
-    EnvironmentEntry entry;
-    read_keys(table, environment_rows(), entry, at);
-    EnvironmentDesc& environment = entry.environment;
-    environment.loc = table.loc;
-    for (float& channel : environment.radiance) {
-        channel = static_cast<float>(std::min(double(channel) * entry.scale, Limits::kLargest));
-    }
-    if (!environment.file.empty()) {
-        const Value& written = *table.find("file");
-        const AssetPath found = reader.find(environment.file, written.loc);
-        if (found.path.empty()) {
-            at.problems.error(written.loc,
-                              "environment: file '" + environment.file + "' " + found.reason);
-        }
-        if (!found.note.empty()) at.problems.note(written.loc, "environment: " + found.note);
-        environment.file = found.path;
-    }
-    reader.scene.environment = environment;
-}
-
 }  // namespace
 
 void read_settings(const Value& document, SceneReader& reader) {
@@ -254,11 +199,11 @@ void read_settings(const Value& document, SceneReader& reader) {
     if (const Value* table = document.find("film")) read_film(*table, reader);
     if (const Value* table = document.find("render")) read_render(*table, reader);
     if (const Value* table = document.find("environment")) read_environment(*table, reader);
+    if (const Value* table = document.find("sky")) read_sky(*table, reader);
 }
 
 const KeyList& camera_keys() { return camera_rows().list; }
 const KeyList& film_keys() { return film_rows().list; }
 const KeyList& render_keys() { return render_rows().list; }
-const KeyList& environment_keys() { return environment_rows().list; }
 
 }  // namespace tessera

@@ -32,6 +32,7 @@ const KeySet<Root>& root_rows() {
              table_row("film", Kind::table, {&film_keys()}, "The picture."),
              table_row("render", Kind::table, {&render_keys()}, "How it is made."),
              table_row("environment", Kind::table, {&environment_keys()}, "Light from all around."),
+             table_row("sky", Kind::table, {&sky_keys()}, "A clear sky with its sun."),
              table_row("mesh", Kind::tables, {&mesh_keys()}, "A mesh from an OBJ file."),
              table_row("sphere", Kind::tables, {&sphere_keys()}, "An exact sphere."),
              table_row("disc", Kind::tables, {&disc_keys()}, "An exact disc."),
@@ -73,7 +74,7 @@ std::vector<bool> materials_in_use(const SceneDesc& scene) {
 const KeyList& scene_keys() { return root_rows().list; }
 
 bool has_emitter(const SceneDesc& scene, bool textured) {
-    if (scene.environment || !scene.lights.empty()) return true;
+    if (scene.environment || scene.sky || !scene.lights.empty()) return true;
     const std::vector<bool> used = materials_in_use(scene);
     for (std::size_t m = 0; m < used.size(); ++m) {
         const MaterialDesc& material = scene.materials[m];

@@ -142,6 +142,25 @@ LaneMask EnvironmentLight::sample(LaneMask lanes, const SamplePairs& u, LightSam
     return made;
 }
 
+DistantLight make_distant_light(Vec3f to_light, Color irradiance, double angle_deg,
+                                bool camera_visible) {
+    constexpr double kPiD = 3.14159265358979323846;
+    DistantLight d;
+    d.to_light = to_light;
+    d.frame = Frame(d.to_light);
+    d.irradiance = irradiance;
+    d.camera_visible = camera_visible;
+    const double half = 0.5 * angle_deg * kPiD / 180;
+    if (half > 0) {
+        // 1 - cos by the half angle's sine, which keeps its digits; E = L pi sin^2 on a facing
+        // surface.
+        d.one_minus_cos = static_cast<float>(2 * std::sin(half / 2) * std::sin(half / 2));
+        d.radiance =
+            d.irradiance * static_cast<float>(1 / (kPiD * std::sin(half) * std::sin(half)));
+    }
+    return d;
+}
+
 EnvironmentLight make_constant_environment(Color radiance, bool camera_visible) {
     EnvironmentLight e;
     e.scale = radiance;

@@ -179,6 +179,9 @@ inline constexpr float kMinSolidAngle = 0.05f;
 /// edge_u and edge_v span the quad; it emits along edge_u x edge_v. Area 0: the quad is degenerate.
 QuadLight make_quad_light(Vec3d corner, Vec3d edge_u, Vec3d edge_v, Color radiance, bool two_sided);
 
+/// A sun: to_light is a unit vector, irradiance that of a surface facing it, angle_deg its breadth.
+DistantLight make_distant_light(Vec3f to_light, Color irradiance, double angle_deg,
+                                bool camera_visible);
 EnvironmentLight make_constant_environment(Color radiance, bool camera_visible);
 /// texels: width x height RGB from the top. Sanitised by the caller.
 EnvironmentLight make_environment(int width, int height, std::vector<Color> texels, Color scale,

@@ -103,6 +103,11 @@ private:
         return *scene_->colors_;
     }
 
+    bool has_environment_image() const {
+        return desc_.environment &&
+               (!desc_.environment->file.empty() || !desc_.environment->faces.empty());
+    }
+
     int default_material() const { return static_cast<int>(desc_.materials.size()) - 1; }
     const ProgramFacts& facts(int material) const {
         return scene_->programs_[material >= 0 ? material : default_material()].facts();
@@ -115,7 +120,7 @@ private:
         for (const LightDesc& l : desc_.lights) world.add(light_bounds(l));
         if (world.empty()) {
             problems_.warn({}, "the scene has no shapes: the picture is its background");
-            if (desc_.environment || !desc_.lights.empty())
+            if (desc_.environment || desc_.sky || !desc_.lights.empty())
                 world.add({{-1, -1, -1}, {1, 1, 1}});
             else
                 world.add({{0, 0, 0}, {0, 0, 0}});
@@ -278,7 +283,7 @@ private:
                         scene_->textures_.get(),
                         nullptr,
                         problems_};
-        if (desc_.environment && !desc_.environment->file.empty()) in.colors = &colors();
+        if (desc_.sky || has_environment_image()) in.colors = &colors();
         scene_->lights_ = make_emitters(in, scene_->geometry_);
         scene_->emission_can_be_hit_ = scene_->lights_.hittable();
         for (std::size_t i = 0; i < used_.size(); ++i) {
@@ -407,7 +412,7 @@ private:
                           desc_.textures.size()));
         leave(!scene_->colors_ || !scene_->colors_->awake(), "OpenColorIO",
               "no image needs more than the sRGB curve");
-        leave(!desc_.environment || desc_.environment->file.empty(), "environment table",
+        leave(!desc_.sky && !has_environment_image(), "environment table",
               desc_.environment ? "the environment is constant" : "there is no environment");
         leave(bake_report_.dropped_uvs > 0, "texture coordinates",
               fmt::format("nothing reads them ({} bytes)", bake_report_.dropped_uvs));

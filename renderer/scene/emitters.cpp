@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "materials/lobe.h"
-#include "renderer/image/image_io.h"
+#include "renderer/scene/environment.h"
 
 namespace tessera {
 namespace {
@@ -63,20 +63,8 @@ struct EmitterBuilder {
     }
 
     void make(const DistantLightDesc& l, const LightDesc& desc) {
-        DistantLight d;
-        d.to_light = Vec3f(-normalize(Vec3d(l.direction)));
-        d.frame = Frame(d.to_light);
-        d.irradiance = color_of(l.irradiance);
-        d.camera_visible = desc.visible;
-        const double half = 0.5 * l.angle_deg * kPiD / 180;
-        if (half > 0) {
-            // 1 - cos by the half angle's sine, which keeps its digits; E = L pi sin^2 on a facing
-            // surface.
-            d.one_minus_cos = static_cast<float>(2 * std::sin(half / 2) * std::sin(half / 2));
-            d.radiance =
-                d.irradiance * static_cast<float>(1 / (kPiD * std::sin(half) * std::sin(half)));
-        }
-        add(d);
+        add(make_distant_light(Vec3f(-normalize(Vec3d(l.direction))), color_of(l.irradiance),
+                               l.angle_deg, desc.visible));
     }
 
     void make(const QuadLightDesc& l, const LightDesc& desc) {
@@ -252,45 +240,6 @@ struct EmitterBuilder {
             added(area);
         }
     }
-
-    void environment(const EnvironmentDesc& desc) {
-        if (desc.file.empty()) {
-            if (max_component(color_of(desc.radiance)) > 0.0f)
-                add(make_constant_environment(color_of(desc.radiance), desc.visible));
-            return;
-        }
-        Image image;
-        try {
-            image = read_image(desc.file);
-        } catch (const Error& e) {
-            in.problems.error(desc.loc, fmt::format("environment: {}", e.what()));
-            return;
-        }
-        std::vector<Color> texels(std::size_t(image.width) * image.height);
-        std::size_t bad = 0;
-        for (std::size_t i = 0; i < texels.size(); ++i) {
-            const float* p = &image.pixels[i * image.channels];
-            Color c = image.channels >= 3 ? Color{p[0], p[1], p[2]} : Color(p[0]);
-            if (!is_finite(c) || min_component(c) < 0.0f) {
-                ++bad;
-                c = is_finite(c) ? max(c, Color(0.0f)) : Color(0.0f);
-            }
-            texels[i] = c;
-        }
-        if (bad > 0)
-            in.problems.warn(
-                desc.loc,
-                fmt::format("environment '{}': {} texels are not finite or negative, taken as 0",
-                            desc.file, bad));
-        const bool eight_bit = !image_info(desc.file).is_float;
-        static_assert(sizeof(Color) == 3 * sizeof(float));
-        in.colors->to_working(
-            {&texels[0].x, texels.size() * 3},
-            desc.color_space.empty() && eight_bit ? "srgb_texture" : desc.color_space);
-        for (Color& c : texels) c = is_finite(c) ? max(c, Color(0.0f)) : Color(0.0f);
-        add(make_environment(image.width, image.height, std::move(texels), color_of(desc.radiance),
-                             desc.rotate_deg, desc.visible));
-    }
 };
 
 }  // namespace
@@ -299,7 +248,10 @@ LightSet make_emitters(const EmitterInput& in, Geometry& geometry) {
     EmitterBuilder b{in, geometry, {}, {}, {}};
     b.surfaces(geometry.placements.size());
     for (const LightDesc& light : in.desc.lights) b.described(light);
-    if (in.desc.environment) b.environment(*in.desc.environment);
+    if (in.desc.environment)
+        if (auto light = make_environment(*in.desc.environment, in)) b.add(std::move(*light));
+    if (in.desc.sky)
+        for (Light& light : make_sky(*in.desc.sky, in)) b.add(std::move(light));
     return LightSet(std::move(b.lights), b.powers);
 }
 

@@ -88,7 +88,14 @@ public:
         std::visit([&](const auto& s) { (*this)(s); }, l.shape);
     }
     void operator()(const EnvironmentDesc& e) {
-        all(e.file, e.color_space, e.radiance, e.rotate_deg, e.visible);
+        all(e.file, e.faces, e.projection, e.color_space, e.radiance, e.rotate_deg, e.visible);
+    }
+    void operator()(const SkyDesc::PlaceAndTime& t) {
+        all(t.latitude_deg, t.longitude_deg, t.year, t.month, t.day, t.hour);
+    }
+    void operator()(const SkyDesc& s) {
+        all(s.turbidity, s.ground_albedo, s.sun_elevation_deg, s.sun_azimuth_deg, s.when,
+            s.sun_angle_deg, s.intensity, s.sun, s.visible);
     }
     void operator()(const CameraDesc& c) {
         all(c.automatic, c.projection, c.position, c.look_at, c.up, c.matrix, c.fov_deg, c.fov_axis,
@@ -118,8 +125,8 @@ private:
 
 std::string scene_hash(const SceneDesc& d) {
     Hasher h;
-    h.all(d.camera, d.film, d.render, d.environment, d.textures, d.materials, d.meshes, d.spheres,
-          d.discs, d.groups, d.instances, d.lights);
+    h.all(d.camera, d.film, d.render, d.environment, d.sky, d.textures, d.materials, d.meshes,
+          d.spheres, d.discs, d.groups, d.instances, d.lights);
     return h.hex();
 }
 

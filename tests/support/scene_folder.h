@@ -17,6 +17,7 @@ namespace tessera {
 /// A folder of scene files that goes when the test ends.
 class SceneFolder {
 public:
+    std::string path(const std::string& name) const { return folder_.path() + "/" + name; }
     std::string write(const std::string& name, const std::string& text) const {
         const std::filesystem::path path = folder_ / name;
         std::filesystem::create_directories(path.parent_path());

@@ -1,0 +1,182 @@
+#include "renderer/io/scene_environment.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+
+#include "renderer/io/params.h"
+
+namespace tessera {
+namespace {
+
+/// The environment as it is written: radiance and scale multiply.
+struct EnvironmentEntry {
+    EnvironmentDesc environment;
+    double scale = 1;
+};
+
+const KeySet<EnvironmentDesc>& environment_part() {
+    using E = EnvironmentDesc;
+    static const KeySet<E> keys{
+        {"environment",
+         {
+             key("file", &E::file, "Image of all directions, y up; its middle looks along -z."),
+             key("faces", &E::faces,
+                 "Six images in its place: +x -x +y -y +z -z as seen from inside."),
+             choice("projection", &E::projection,
+                    {"automatic", "latlong", "cube_cross_horizontal", "cube_cross_vertical",
+                     "cube_strip", "mirror_ball", "angular"},
+                    "How the image shows all directions; automatic: by its shape."),
+             key("radiance", &E::radiance,
+                 "Radiance from everywhere, W/m2/sr; with a file, a factor on the image.",
+                 kAtLeast0),
+             key("rotate_deg", &E::rotate_deg, "Turn about +y."),
+             key("color_space", &E::color_space,
+                 "Colour space of the image; absent: the working space."),
+             key("visible", &E::visible, "Seen by camera rays."),
+         }}};
+    return keys;
+}
+
+const KeySet<EnvironmentEntry>& environment_rows() {
+    static const KeySet<EnvironmentEntry> keys = [] {
+        KeySet<EnvironmentEntry> rows{{"environment", {}}};
+        add_part(rows, environment_part(), &EnvironmentEntry::environment);
+        rows.list.keys.push_back(
+            key("scale", &EnvironmentEntry::scale, "Factor on the radiance.", kAtLeast0));
+        return rows;
+    }();
+    return keys;
+}
+
+/// The sky as it is written.
+struct SkyEntry {
+    SkyDesc sky;
+    double latitude_deg = 0, longitude_deg = 0;
+    std::string time;
+};
+
+const KeySet<SkyDesc>& sky_part() {
+    using S = SkyDesc;
+    static const KeySet<S> keys{
+        {"sky",
+         {
+             key("turbidity", &S::turbidity, "Haze: 1.8 the clearest air, 10 thick.",
+                 {.low = 1.8, .high = 10}),
+             key("ground_albedo", &S::ground_albedo, "What the ground sends back up.",
+                 kUnitClamped),
+             key("sun_elevation_deg", &S::sun_elevation_deg, "Height of the sun.",
+                 {.low = -90, .high = 90}),
+             key("sun_azimuth_deg", &S::sun_azimuth_deg,
+                 "Direction of the sun from north (-z) by east (+x)."),
+             key("sun_angle_deg", &S::sun_angle_deg, "Breadth of the sun's disc.",
+                 {.low = 0.01, .high = 20}),
+             key("intensity", &S::intensity, "Factor on sky and sun.", kAtLeast0),
+             key("sun", &S::sun, "With the sun's disc, as a distant light."),
+             key("visible", &S::visible, "Seen by camera rays."),
+         }}};
+    return keys;
+}
+
+const KeySet<SkyEntry>& sky_rows() {
+    static const KeySet<SkyEntry> keys = [] {
+        KeySet<SkyEntry> rows{{"sky", {}}};
+        add_part(rows, sky_part(), &SkyEntry::sky);
+        auto& list = rows.list.keys;
+        list.push_back(key("latitude_deg", &SkyEntry::latitude_deg, "Place, with time: north.",
+                           {.low = -90, .high = 90}));
+        list.push_back(key("longitude_deg", &SkyEntry::longitude_deg, "Place, with time: east.",
+                           {.low = -180, .high = 180}));
+        list.push_back(key("time", &SkyEntry::time,
+                           "When, in place of the sun's angles: \"2026-06-21T14:30Z\", UTC."));
+        return rows;
+    }();
+    return keys;
+}
+
+std::optional<SkyDesc::PlaceAndTime> parse_time(const std::string& text) {
+    SkyDesc::PlaceAndTime t;
+    int hour = 0, minute = 0, second = 0, used = 0;
+    const int read = std::sscanf(text.c_str(), "%4d-%2d-%2dT%2d:%2d%n", &t.year, &t.month, &t.day,
+                                 &hour, &minute, &used);
+    if (read != 5) return std::nullopt;
+    int more = 0;
+    if (std::sscanf(text.c_str() + used, ":%2d%n", &second, &more) == 1) used += more;
+    const std::string rest = text.substr(static_cast<std::size_t>(used));
+    const bool good = (rest.empty() || rest == "Z") && t.year >= 1900 && t.year <= 2100 &&
+                      t.month >= 1 && t.month <= 12 && t.day >= 1 && t.day <= 31 && hour >= 0 &&
+                      hour < 24 && minute >= 0 && minute < 60 && second >= 0 && second < 61;
+    if (!good) return std::nullopt;
+    t.hour = hour + minute / 60.0 + second / 3600.0;
+    return t;
+}
+
+/// The path of an image; "" after an error.
+std::string find_image(const std::string& file, const Value& written, SceneReader& reader,
+                       const ReadContext& at) {
+    const AssetPath found = reader.find(file, written.loc);
+    if (found.path.empty())
+        at.problems.error(written.loc, "environment: file '" + file + "' " + found.reason);
+    if (!found.note.empty()) at.problems.note(written.loc, "environment: " + found.note);
+    return found.path;
+}
+
+}  // namespace
+
+void read_environment(const Value& table, SceneReader& reader) {
+    const ReadContext at{reader.problems, "environment"};
+    EnvironmentEntry entry;
+    read_keys(table, environment_rows(), entry, at);
+    EnvironmentDesc& environment = entry.environment;
+    environment.loc = table.loc;
+    for (float& channel : environment.radiance) {
+        channel = static_cast<float>(std::min(double(channel) * entry.scale, Limits::kLargest));
+    }
+    if (!environment.file.empty())
+        environment.file = find_image(environment.file, *table.find("file"), reader, at);
+    if (!environment.faces.empty()) {
+        const Value& written = *table.find("faces");
+        if (environment.faces.size() != 6 || !environment.file.empty()) {
+            at.problems.error(
+                written.loc, "environment: faces are six images, and there is no file beside them");
+            environment.faces.clear();
+        }
+        for (std::string& face : environment.faces) face = find_image(face, written, reader, at);
+    }
+    reader.scene.environment = environment;
+}
+
+void read_sky(const Value& table, SceneReader& reader) {
+    const ReadContext at{reader.problems, "sky"};
+    SkyEntry entry;
+    read_keys(table, sky_rows(), entry, at);
+    entry.sky.loc = table.loc;
+    const Value* time = table.find("time");
+    const bool place = table.find("latitude_deg") && table.find("longitude_deg");
+    if (time && !entry.time.empty()) {
+        entry.sky.when = parse_time(entry.time);
+        if (!entry.sky.when)
+            at.problems.error(time->loc, "sky: time is '" + entry.time +
+                                             "', must be like \"2026-06-21T14:30Z\" (UTC)");
+        else if (!place)
+            at.problems.error(time->loc, "sky: time needs latitude_deg and longitude_deg");
+        if (entry.sky.when) {
+            entry.sky.when->latitude_deg = entry.latitude_deg;
+            entry.sky.when->longitude_deg = entry.longitude_deg;
+        }
+        for (const char* angle : {"sun_elevation_deg", "sun_azimuth_deg"})
+            if (const Value* other = table.find(angle))
+                at.problems.error(other->loc, std::string("sky: ") + angle +
+                                                  " and time both say where the sun is");
+    } else if (table.find("latitude_deg") || table.find("longitude_deg")) {
+        at.problems.error(table.loc, "sky: latitude_deg and longitude_deg need a time");
+    }
+    if (reader.scene.environment)
+        at.problems.error(table.loc, "sky: there is an [environment] already");
+    reader.scene.sky = entry.sky;
+}
+
+const KeyList& environment_keys() { return environment_rows().list; }
+const KeyList& sky_keys() { return sky_rows().list; }
+
+}  // namespace tessera
