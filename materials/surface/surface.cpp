@@ -82,7 +82,7 @@ float Surface::boundary_albedo(float cos_o) const {
 }
 
 float Surface::metal_albedo(float cos_o) const {
-    if (is_smooth(ggx)) return 1.0f;
+    if (is_smooth(ggx) || is_stretched(ggx)) return 1.0f;
     if (curves && curves->metal) return (*curves->metal)(cos_o);
     return mirror_albedo(cos_o, mean_alpha(ggx));
 }
@@ -94,6 +94,7 @@ float Surface::coat_albedo(float cos_o) const {
 }
 
 float Surface::glass_albedo_for(float cos_o, float eta) const {
+    if (is_stretched(ggx)) return 1.0f;
     if (curves && curves->glass_outside && eta == ior) return (*curves->glass_outside)(cos_o);
     if (curves && curves->glass_inside && eta == 1.0f / ior) return (*curves->glass_inside)(cos_o);
     return glass_albedo(cos_o, mean_alpha(ggx), eta);

@@ -47,5 +47,8 @@ inline constexpr float kSameIndex = 1e-4f;
 
 inline bool is_smooth(const Ggx& ggx) { return std::max(ggx.ax, ggx.ay) < kMinAlpha; }
 inline float mean_alpha(const Ggx& ggx) { return std::sqrt(ggx.ax * ggx.ay); }
+/// The energy tables are of round highlights. What a stretched one loses depends on where it is
+/// seen from: none of it is given back, so that no direction gets more than it lost.
+inline bool is_stretched(const Ggx& ggx) { return ggx.ax != ggx.ay; }
 
 }  // namespace tessera

@@ -3,8 +3,10 @@
 
 #include "renderer/api/openpbr_inputs.h"
 #include "renderer/io/nearest_name.h"
+#include "renderer/io/presets.h"
 #include "renderer/io/scene_layers.h"
 #include "renderer/io/scene_nodes.h"
+#include "renderer/io/scene_parse.h"
 #include "renderer/io/scene_textures.h"
 
 namespace tessera {
@@ -137,7 +139,9 @@ Key inherits_row() {
     const auto store = [](void*, const Value&, const Key&, const ReadContext&) {};
     const Form form{.kind = Form::Kind::text};
     return {"inherits", form,
-            "Starts from this material; its own name: from the OBJ library's of that name.", store};
+            "Starts from this material; its own name: from the OBJ library's of that name; "
+            "\"preset:gold\": from one that comes with Tessera.",
+            store};
 }
 
 /// Nodes by name are read where something refers to them.
@@ -228,13 +232,33 @@ private:
         MaterialDesc material = inherited(name, table, depth, at);
         material.name = name;
         material.loc = table.loc;
+        fill(material, table, at);
+        put(name, std::move(material), table.find("inherits") != nullptr);
+        done_.insert(name);
+    }
+
+    void fill(MaterialDesc& material, const Value& table, const ReadContext& at) {
         NodeReader nodes(material, reader_, table.find("node"));
         MaterialTarget target{material, reader_, nodes};
         read_keys(table, material_rows(), target, at);
         if (const Value* layers = table.find("layer"))
             read_material_layers(*layers, material, nodes, at);
-        put(name, std::move(material), table.find("inherits") != nullptr);
-        done_.insert(name);
+    }
+
+    MaterialDesc preset(const std::string& name, const Value& written, const ReadContext& at) {
+        std::vector<std::string> names;
+        for (const Preset& p : presets()) {
+            names.emplace_back(p.name);
+            if (p.name != name) continue;
+            const Value document = parse_toml(p.text, "preset:" + name);
+            const Value* table = document.find("material")->find(name);
+            MaterialDesc material;
+            fill(material, *table, {at.problems, "preset '" + name + "'", "input"});
+            return material;
+        }
+        at.problems.error(written.loc, at.subject + ": there is no preset '" + name + "'" +
+                                           did_you_mean(name, names));
+        return {};
     }
 
     MaterialDesc inherited(const std::string& name, const Value& table, int depth,
@@ -246,6 +270,9 @@ private:
             return {};
         }
         const std::string& parent = *inherits->text();
+        constexpr std::string_view kPreset = "preset:";
+        if (parent.starts_with(kPreset))
+            return preset(parent.substr(kPreset.size()), *inherits, at);
         const Value* parent_table = parent == name ? nullptr : tables_.find(parent);
         if (parent_table) {
             if (depth < kMaxInheritance) read(parent, *parent_table, depth + 1);

@@ -184,8 +184,9 @@ std::optional<int> NodeReader::read_node(const Value& table, NodeType wanted,
                                                                    "gain", "bias"};
         if (key == "type" || key == "output" || (image && image_keys.contains(key))) continue;
         const auto inputs = info.inputs();
-        const auto input = std::find_if(inputs.begin(), inputs.end(),
-                                        [&](const NodeInputInfo& i) { return i.name == key; });
+        const auto input = std::find_if(
+            inputs.begin(), inputs.end(),
+            [&, &wanted_name = key](const NodeInputInfo& i) { return i.name == wanted_name; });
         if (input == inputs.end()) {
             std::vector<std::string> names;
             for (const NodeInputInfo& i : inputs) names.emplace_back(i.name);

@@ -121,7 +121,7 @@ private:
         Vec3d sum;
         for (const Vec3d& c : out_) sum += c;
         const Vec3d factor = ratio(source_.total(), sum);
-        constexpr double kMost = std::numeric_limits<float>::max();
+        constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
         std::vector<Color> map;
         map.reserve(out_.size());
         for (int y = 0; y < height_; ++y) {

@@ -173,6 +173,25 @@ TEST_CASE("furnace: white surfaces give back everything, however rough") {
     CHECK(failures(cases, 0.012, true) == "");
 }
 
+TEST_CASE("furnace: stretched highlights lose a little and make nothing") {
+    std::vector<FurnaceCase> cases;
+    for (const float roughness : {0.2f, 0.4f, 0.6f, 0.8f, 1.0f}) {
+        for (const float anisotropy : {0.3f, 0.6f, 0.85f, 1.0f}) {
+            for (const float cosine : {1.0f, 0.7f, 0.3f, 0.1f}) {
+                for (const int base : {0, 1, 2}) {
+                    SurfaceParams p = white();
+                    p.base_metalness = base == 1 ? 1.0f : 0.0f;
+                    p.transmission_weight = base == 2 ? 1.0f : 0.0f;
+                    p.specular_roughness = roughness;
+                    p.specular_roughness_anisotropy = anisotropy;
+                    cases.push_back({p, cosine, true});
+                }
+            }
+        }
+    }
+    CHECK(failures(cases, 0.012, false) == "");
+}
+
 TEST_CASE(
     "furnace: white Lambert, smooth glass and a perfect mirror give back everything exactly") {
     for (const float cosine : {1.0f, 0.5f, 0.05f}) {

@@ -10,6 +10,7 @@
 #include "materials/nodes/color_math.h"
 #include "materials/program.h"
 #include "renderer/io/node_docs.h"
+#include "renderer/io/presets.h"
 #include "tests/support/scene_folder.h"
 
 namespace tessera::test {
@@ -242,6 +243,25 @@ TEST_CASE("graph: layers of a material drive several inputs by one mask") {
                     "'ruoghness' (did you mean 'specular_roughness'?)") != std::string::npos);
     CHECK(failure("geometry_opacity = 1").find("takes no layers") != std::string::npos);
     CHECK(failure("opacity = 2").find("opacity is 2") != std::string::npos);
+}
+
+TEST_CASE("presets: each reads without a word and compiles, and a mistyped one is helped") {
+    const SceneFolder folder;
+    REQUIRE(presets().size() >= 20);
+    for (const Preset& p : presets()) {
+        const std::string name(p.name);
+        CAPTURE(name);
+        const SceneDesc scene = folder.load("[material.a]\ninherits = 'preset:" + name + "'");
+        CHECK(scene.warnings.size() <= 1);  // that nothing emits light
+        const ShaderProgram program(material_of(scene, "a"));
+        CHECK(program.facts().specular);
+    }
+    const SceneDesc gold =
+        folder.load("[material.ring]\ninherits = 'preset:gold'\nspecular_roughness = 0.5");
+    CHECK(material_of(gold, "ring").base_metalness.value == 1);
+    CHECK(material_of(gold, "ring").specular_roughness.value == 0.5f);
+    CHECK(folder.failure("[material.a]\ninherits = 'preset:glod'") ==
+          "s.toml:3:1: material 'a': there is no preset 'glod' (did you mean 'gold'?)");
 }
 
 TEST_CASE("nodes: the page in docs is what the table says") {
