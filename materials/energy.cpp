@@ -149,9 +149,4 @@ AlbedoCurve AlbedoCurve::glass(float alpha, float eta) {
     return AlbedoCurve([&](float mu) { return glass_albedo_quadrature(mu, alpha, eta, 32); });
 }
 
-float AlbedoCurve::operator()(float cos_o) const noexcept {
-    const Cell c = cell(safe_sqrt(cos_o), kCells);
-    return values_[c.i] + (values_[c.i + 1] - values_[c.i]) * c.t;
-}
-
 }  // namespace tessera

@@ -75,9 +75,8 @@ SurfaceCurves Surface::make_curves() const {
     return c;
 }
 
-float Surface::boundary_albedo(float cos_o) const {
+float Surface::varied_boundary_albedo(float cos_o) const {
     if (is_smooth(ggx)) return fresnel_dielectric(cos_o, boundary_eta);
-    if (curves && curves->boundary) return (*curves->boundary)(cos_o);
     return dielectric_reflection_albedo(cos_o, mean_alpha(ggx), boundary_eta);
 }
 

@@ -34,11 +34,17 @@ struct Surface {
     /// The curves that lobes of this surface can ask for.
     SurfaceCurves make_curves() const;
 
-    float boundary_albedo(float cos_o) const;
+    float boundary_albedo(float cos_o) const {
+        if (curves && curves->boundary) return (*curves->boundary)(cos_o);
+        return varied_boundary_albedo(cos_o);
+    }
     float metal_albedo(float cos_o) const;
     float coat_albedo(float cos_o) const;
     /// eta: beyond over here.
     float glass_albedo_for(float cos_o, float eta) const;
+
+private:
+    float varied_boundary_albedo(float cos_o) const;
 };
 
 /// A boundary is looked through undisturbed where the two indices agree; the half vector is
