@@ -126,14 +126,21 @@ MaterialDesc folded(MaterialDesc m) {
     return m;
 }
 
-std::pair<float, float> limits_of(auto wanted) {
-    std::pair<float, float> out{0.0f, 1.0f};
-    visit_openpbr([&](auto member, const OpenPbrInput& info) {
-        if constexpr (std::is_same_v<decltype(member), decltype(wanted)>)
-            if (member == wanted)
-                out = {static_cast<float>(info.low), static_cast<float>(info.high)};
+// Within limits; what is no number is the lower one.
+float kept(float x, float low, float high) { return x >= low ? std::min(x, high) : low; }
+Vec3f kept(Vec3f v, float low, float high) {
+    return {kept(v.x, low, high), kept(v.y, low, high), kept(v.z, low, high)};
+}
+
+template <class Input>
+std::pair<float, float> limits_of(Input MaterialDesc::*wanted) {
+    OpenPbrInput found{};
+    visit_openpbr([&]<class Other>(Other MaterialDesc::*member, const OpenPbrInput& info) {
+        if constexpr (std::is_same_v<Other, Input>) {
+            if (member == wanted) found = info;
+        }
     });
-    return out;
+    return {static_cast<float>(found.low), static_cast<float>(found.high)};
 }
 
 }  // namespace
@@ -164,7 +171,8 @@ ShaderProgram::ShaderProgram(const MaterialDesc& desc) : m_(folded(desc)) {
     facts_.transmission = !zero(m_.transmission_weight);
     const bool boundary =
         !zero(m_.specular_weight) && (m_.specular_ior.value != 1.0f || m_.specular_ior.varies());
-    facts_.layers = !zero(m_.fuzz_weight) || !zero(m_.coat_weight) || !zero(m_.thin_film_weight) ||
+    facts_.coat = !zero(m_.coat_weight);
+    facts_.layers = !zero(m_.fuzz_weight) || facts_.coat || !zero(m_.thin_film_weight) ||
                     !zero(m_.base_diffuse_roughness) || !zero(m_.subsurface_weight);
     facts_.specular = facts_.transmission || !zero(m_.base_metalness) || boundary || facts_.layers;
     facts_.glass = facts_.transmission && !m_.geometry_thin_walled;
@@ -184,7 +192,7 @@ ShaderProgram::ShaderProgram(const MaterialDesc& desc) : m_(folded(desc)) {
     for (const Varying& v : varying_) {
         // A graph that comes to a constant is one.
         if (!v.wired || v.wire.op >= 0) continue;
-        const Vec3f value = min(max(v.wire.constant, Vec3f(v.low)), Vec3f(v.high));
+        const Vec3f value = kept(v.wire.constant, v.low, v.high);
         if (v.color)
             p.*v.color_param = value;
         else
@@ -237,10 +245,10 @@ SurfaceParams ShaderProgram::params(const ShadeInput& in,
     for (const Varying& v : varying_) {
         if (v.color) {
             const Color c = v.wired ? run.value(v.wire) : read(m_.*v.color, in, store);
-            p.*v.color_param = min(max(c, Color(v.low)), Color(v.high));
+            p.*v.color_param = kept(c, v.low, v.high);
         } else {
             const float x = v.wired ? run.value(v.wire).x : read(m_.*v.scalar, in, store);
-            p.*v.scalar_param = std::clamp(x, v.low, v.high);
+            p.*v.scalar_param = kept(x, v.low, v.high);
         }
     }
     if (m_.use_vertex_color) p.base_color *= in.vertex_color;

@@ -23,7 +23,8 @@ struct ProgramFacts {
     bool emissive = false;
     bool emission_textured = false;
     bool specular = false;  // any lobe other than Lambert's
-    bool layers = false;    // fuzz, coat, film, rough or translucent body
+    bool coat = false;
+    bool layers = false;  // fuzz, coat, film, rough or translucent body
     bool transmission = false;
     bool glass = false;       // solid: refracts, encloses a medium
     bool subsurface = false;  // solid: light walks through it

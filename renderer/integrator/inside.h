@@ -71,6 +71,7 @@ public:
             ior = dispersed_ior(ior, surface.p.transmission_dispersion_abbe_number / scale,
                                 next_wave_);
         }
+        next_ior_ = ior;
         const MediumStack::Body* other = entering ? here : stack_.here(material);
         const float beyond = other ? other->ior : 1.0f;
         eta_ = entering ? ior / beyond : beyond / ior;
@@ -91,7 +92,7 @@ public:
         }
         if (cls != LobeClass::transmission || !program.facts().glass) return Color(1.0f);
         if (front)
-            stack_.enter({material, program.dielectric_priority(), program.constant().specular_ior,
+            stack_.enter({material, program.dielectric_priority(), next_ior_,
                           program.transmission(in, store)});
         else
             stack_.leave(material);
@@ -106,7 +107,8 @@ private:
     std::int32_t body_material_;
     bool walking_, leaves_body_;
     int passes_;
-    float eta_, wave_, next_wave_;  // waves in micrometres; 0: all of them
+    float eta_, next_ior_;    // at the boundary: beyond over here, and of what is entered
+    float wave_, next_wave_;  // micrometres; 0: all of them
 };
 
 }  // namespace tessera

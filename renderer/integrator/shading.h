@@ -73,6 +73,7 @@ Vec3f facing_normal(const SurfacePoint& s, const ShaderProgram& program, const S
 template <Features F>
 Frame coat_frame(const SurfacePoint& s, const ShaderProgram& program, const ShadeInput& in,
                  const TextureStore* textures, bool front, const Frame& shading, Vec3f wo) {
+    if (!program.facts().coat) return {};
     if (!program.has_normal_map() && !program.has_coat_normal_map()) return {};
     Vec3f n = front ? s.ns : -s.ns;
     if (program.has_coat_normal_map()) map_normal(s, program.coat_normal(in, textures), front, n);

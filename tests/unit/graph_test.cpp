@@ -271,17 +271,33 @@ TEST_CASE("nodes: the page in docs is what the table says") {
     CHECK(text.str() == nodes_markdown());
 }
 
-TEST_CASE("graph: hostile numbers do no harm") {
-    const float bad[] = {
-        std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity, 1e30f, -1e30f, 0.0f};
-    for (std::size_t type = 0; type < kNodes.size(); ++type) {
-        const NodeInfo& info = kNodes[type];
-        if (info.op == NodeOp::image || info.op == NodeOp::triplanar) continue;
-        for (const float x : bad) {
+TEST_CASE("graph: hostile numbers end within a parameter's limits") {
+    for (const float x :
+         {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity, 1e30f, -1e30f, 0.0f}) {
+        CAPTURE(x);
+        for (const NodeInfo& info : kNodes) {
+            if (info.op == NodeOp::image || info.op == NodeOp::triplanar) continue;
             NodeResult in[kMaxNodeInputs];
             for (NodeResult& r : in) r = {Vec3f(x), 0.1f, {}};
             run_node(info.op, in);
         }
+        const SceneFolder folder;
+        const SceneDesc scene = folder.load(
+            "[material.a]\nbase_color = { type = 'normal' }\n"
+            "specular_roughness = { type = 'facingratio' }\n"
+            "specular_ior = { type = 'add', in1 = { type = 'facingratio' } }\n");
+        ShadeInput point;
+        point.n = Vec3f(x);
+        point.facing = x;
+        const ShaderProgram program(material_of(scene, "a"));
+        program.with_surface(point, nullptr, [&](const Surface& s) {
+            CHECK(min_component(s.p.base_color) >= 0.0f);
+            CHECK(max_component(s.p.base_color) <= 1.0f);
+            CHECK(s.p.specular_roughness >= 0.0f);
+            CHECK(s.p.specular_roughness <= 1.0f);
+            CHECK(s.p.specular_ior >= 0.1f);
+            CHECK(s.p.specular_ior <= 10.0f);
+        });
     }
 }
 
