@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <new>
 #include <type_traits>
 
 #include "renderer/core/robust.h"
@@ -36,6 +35,8 @@ public:
             intersect(depth);
             escape(depth);
             draw_samples(depth);
+            surface_points(scene_.geometry(), alive_, target_.array(), hit_.array(), ray_.array(),
+                           F.vertex_colors, surface_.array());
             each(alive_, [&](int i) { arrive(i, depth); });
             face_viewer();
             find_lobes();
@@ -55,12 +56,6 @@ private:
     template <class Function>
     static void each(LaneMask lanes, Function f) {
         for (; lanes != 0; lanes &= lanes - 1) f(std::countr_zero(lanes));
-    }
-    // What f() returns, made where it is kept: a copy would wait for its parts.
-    template <class T, class Function>
-    static void make(T& place, Function f) {
-        static_assert(std::is_trivially_destructible_v<T>);
-        new (&place) T(f());
     }
     void stop(int i) noexcept { alive_ &= ~(1u << i); }
 
@@ -196,9 +191,6 @@ private:
     // ---- arrive: the surface, and the light it sends of itself
     void arrive(int i, std::uint32_t depth) noexcept {
         const Vec3f d = ray_[i].d;
-        make(surface_[i], [&] {
-            return surface_point(scene_.geometry(), target_[i], hit_[i], ray_[i], F.vertex_colors);
-        });
         SurfacePoint& s = surface_[i];
         if (!is_finite(s.p) || !is_finite(s.ng) || !is_finite(s.ns) || !(length2(s.ng) > 0.5f)) {
             invalid(InvalidCause::hit, i);

@@ -67,6 +67,8 @@ struct DistantLight {
     Color radiance{0.0f};
     bool camera_visible = true;
     Frame frame{to_light};
+    /// As sample_light, for the lanes of a block.
+    LaneMask sample(LaneMask lanes, const SamplePairs& u, LightSamples& out) const;
 };
 
 struct QuadLight {
