@@ -13,6 +13,7 @@ struct SurfacePoint {
     Vec3f p_error;  // bound on its rounding error, per axis
     Vec3f ng;       // unit, outward by the winding
     Vec3f ns;       // unit shading normal, on ng's side
+    Vec3f lift;     // from p to the surface that smooth normals pretend; zero unless outward
     Vec3f dpdu;     // tangent along u (not unit); zero if there are no uvs
     Vec2f uv;
     float handed = 1;         // -1 where the uv chart is mirrored

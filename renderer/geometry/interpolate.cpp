@@ -49,7 +49,10 @@ Point sphere_point(const Sphere& sphere, const Ray& local, float t, SurfacePoint
     s.uv_per_length = 1.0f / (kPi * sphere.radius);
     // Embree's own float solution is good to a few roundings of centre and radius.
     return {Vec3f(Vec3d(sphere.center) + n * r),
-            (abs(sphere.center) + Vec3f(sphere.radius)) * gamma_bound(16), Vec3f(n), Vec3f(n)};
+            (abs(sphere.center) + Vec3f(sphere.radius)) * gamma_bound(16),
+            Vec3f(n),
+            Vec3f(n),
+            {}};
 }
 
 Point disc_point(const Disc& disc, const Ray& local, SurfacePoint& s) {
@@ -61,8 +64,11 @@ Point disc_point(const Disc& disc, const Ray& local, SurfacePoint& s) {
             0.5f + 0.5f * dot(q, frame.t) / disc.radius};
     s.dpdu = frame.s * (2.0f * disc.radius);
     s.uv_per_length = 0.5f / disc.radius;
-    return {Vec3f(p), abs(disc.center) * gamma_bound(8) + Vec3f(disc.radius * gamma_bound(8)),
-            disc.normal, disc.normal};
+    return {Vec3f(p),
+            abs(disc.center) * gamma_bound(8) + Vec3f(disc.radius * gamma_bound(8)),
+            disc.normal,
+            disc.normal,
+            {}};
 }
 
 // The ray in the space of an instanced shape, in double.

@@ -11,7 +11,7 @@ namespace tessera {
 
 /// What every point has. Apart from SurfacePoint, so that it lives in registers until it is done.
 struct Point {
-    Vec3f p, p_error, ng, ns;
+    Vec3f p, p_error, ng, ns, lift;
 };
 
 struct Corners {
@@ -44,6 +44,11 @@ inline FaceCorners face_corners(const Mesh& mesh, std::uint32_t face, const Hit&
     return f;
 }
 
+/// How far p lies below the plane through a corner with its normal.
+inline Vec3f depth_below(Vec3f p, Vec3f corner, Vec3f n) {
+    return n * std::max(dot(corner - p, n), 0.0f);
+}
+
 inline Point mesh_point(const FaceCorners& f) {
     const Vec3f p = f.a * f.wa + f.b * f.wb + f.c * f.wc;
     // The rounding of the sum (PBRT 4e, eq. 6.24), and that of Embree's plane test, whose products
@@ -59,7 +64,11 @@ inline Point mesh_point(const FaceCorners& f) {
     const float l2 = length2(n);
     const Vec3f ns = n * (1.0f / std::sqrt(l2));
     const bool smooth = l2 > 1e-12f;
-    return {p, error, ng, {smooth ? ns.x : ng.x, smooth ? ns.y : ng.y, smooth ? ns.z : ng.z}};
+    // The surface that the normals pretend: Hanika, "Hacking the Shadow Terminator", Ray Tracing
+    // Gems II, 2021, chapter 4.
+    const Vec3f lift = depth_below(p, f.a, f.na) * f.wa + depth_below(p, f.b, f.nb) * f.wb +
+                       depth_below(p, f.c, f.nc) * f.wc;
+    return {p, error, ng, pick(smooth, ns, ng), lift};
 }
 
 /// From the shape's space to the scene's.
@@ -71,7 +80,8 @@ inline Point to_world(const Affinef& m, float condition, const Point& at) {
     const Affinef cofactor(cross(y, z), cross(z, x), cross(x, y), {});
     const float sign = dot(x, cofactor.x) < 0.0f ? -1.0f : 1.0f;
     return {m.point(at.p), error_in_place(m, condition, at.p, at.p_error),
-            normalize(cofactor.vector(at.ng)) * sign, normalize(cofactor.vector(at.ns)) * sign};
+            normalize(cofactor.vector(at.ng)) * sign, normalize(cofactor.vector(at.ns)) * sign,
+            m.vector(at.lift)};
 }
 
 /// What was hit, by its numbers.
@@ -88,7 +98,11 @@ inline void put(const Point& at, SurfacePoint& s) {
     s.p = at.p;
     s.p_error = at.p_error;
     s.ng = at.ng;
-    s.ns = dot(at.ns, at.ng) < 0.0f ? -at.ns : at.ns;
+    const bool outward = dot(at.ns, at.ng) >= 0.0f;
+    s.ns = outward ? at.ns : -at.ns;
+    // What rounding makes of an even face is none.
+    const bool lifted = outward && length2(at.lift) > 64.0f * length2(at.p_error);
+    s.lift = lifted ? at.lift : Vec3f{};
 }
 
 }  // namespace tessera

@@ -13,7 +13,7 @@ struct MeshPoints {
     float wa[kLanes], wb[kLanes], wc[kLanes];
     Vec3Lanes x, y, z, translation;  // of to_world
     float condition[kLanes];
-    Vec3Lanes p, p_error, ng, ns;
+    Vec3Lanes p, p_error, ng, ns, lift;
 
     void gather(int i, const FaceCorners& f) {
         a.set(i, f.a), b.set(i, f.b), c.set(i, f.c);
@@ -32,18 +32,19 @@ struct MeshPoints {
     [[gnu::flatten]] void place() {
         for (int i = 0; i < kLanes; ++i)
             set(i, to_world({x[i], y[i], z[i], translation[i]}, condition[i],
-                            {p[i], p_error[i], ng[i], ns[i]}));
+                            {p[i], p_error[i], ng[i], ns[i], lift[i]}));
     }
     void write(LaneMask lanes, SurfacePoint (&out)[kLanes]) const {
         for (LaneMask m = lanes; m != 0; m &= m - 1) {
             const int i = std::countr_zero(m);
-            put({p[i], p_error[i], ng[i], ns[i]}, out[i]);
+            put({p[i], p_error[i], ng[i], ns[i], lift[i]}, out[i]);
         }
     }
 
 private:
     void set(int i, const Point& at) {
         p.set(i, at.p), p_error.set(i, at.p_error), ng.set(i, at.ng), ns.set(i, at.ns);
+        lift.set(i, at.lift);
     }
 };
 
