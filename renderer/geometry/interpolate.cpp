@@ -10,6 +10,7 @@ namespace {
 
 void texture_frame_to_world(const Affinef& m, SurfacePoint& s) {
     s.dpdu = m.vector(s.dpdu);
+    s.dpdv = m.vector(s.dpdv);
     if (m.determinant() < 0.0f) s.handed = -s.handed;
     const float scale = std::cbrt(std::fabs(m.determinant()));
     s.uv_per_length = scale > 0.0f ? s.uv_per_length / scale : 0.0f;
@@ -27,7 +28,9 @@ void mesh_texture_frame(const Mesh& mesh, const Hit& hit, SurfacePoint& s) {
     const float uv_area2 = e1.x * e2.y - e2.x * e1.y;
     s.uv_per_length = std::sqrt(std::fabs(uv_area2) / length(cross(ab, ac)));
     s.handed = uv_area2 < 0.0f ? -1.0f : 1.0f;
-    if (uv_area2 != 0.0f) s.dpdu = (ab * e2.y - ac * e1.y) * (1.0f / uv_area2);
+    if (uv_area2 == 0.0f) return;
+    s.dpdu = (ab * e2.y - ac * e1.y) * (1.0f / uv_area2);
+    s.dpdv = (ac * e1.x - ab * e2.x) * (1.0f / uv_area2);
 }
 
 // Embree solves the sphere in float; its t only says which of the two roots was meant.
@@ -46,6 +49,10 @@ Point sphere_point(const Sphere& sphere, const Ray& local, float t, SurfacePoint
             static_cast<float>(std::acos(std::max(-1.0, std::min(1.0, -n.y))) /
                                3.14159265358979323846)};
     s.dpdu = Vec3f(Vec3d{n.z, 0, -n.x} * (2.0 * 3.14159265358979323846 * r));
+    const double ring = std::sqrt(n.x * n.x + n.z * n.z);
+    if (ring > 0)
+        s.dpdv =
+            Vec3f(Vec3d{-n.x * n.y / ring, ring, -n.z * n.y / ring} * (3.14159265358979323846 * r));
     s.uv_per_length = 1.0f / (kPi * sphere.radius);
     // Embree's own float solution is good to a few roundings of centre and radius.
     return {Vec3f(Vec3d(sphere.center) + n * r),
@@ -63,6 +70,7 @@ Point disc_point(const Disc& disc, const Ray& local, SurfacePoint& s) {
     s.uv = {0.5f + 0.5f * dot(q, frame.s) / disc.radius,
             0.5f + 0.5f * dot(q, frame.t) / disc.radius};
     s.dpdu = frame.s * (2.0f * disc.radius);
+    s.dpdv = frame.t * (2.0f * disc.radius);
     s.uv_per_length = 0.5f / disc.radius;
     return {Vec3f(p),
             abs(disc.center) * gamma_bound(8) + Vec3f(disc.radius * gamma_bound(8)),

@@ -66,8 +66,10 @@ inline Point mesh_point(const FaceCorners& f) {
     const bool smooth = l2 > 1e-12f;
     // The surface that the normals pretend: Hanika, "Hacking the Shadow Terminator", Ray Tracing
     // Gems II, 2021, chapter 4.
-    const Vec3f lift = depth_below(p, f.a, f.na) * f.wa + depth_below(p, f.b, f.nb) * f.wb +
-                       depth_below(p, f.c, f.nc) * f.wc;
+    // Halved: the mean of the depths is twice that below a sphere, to second order.
+    const Vec3f lift = (depth_below(p, f.a, f.na) * f.wa + depth_below(p, f.b, f.nb) * f.wb +
+                        depth_below(p, f.c, f.nc) * f.wc) *
+                       0.5f;
     return {p, error, ng, pick(smooth, ns, ng), lift};
 }
 

@@ -279,7 +279,8 @@ private:
             each(alive_, [&](int i) {
                 const SurfacePoint& s = surface_[i];
                 if (!frame_follows_texture<F>(scene_.program(s.material))) return;
-                const Frame f = frame_along(frame_.n[i], s.dpdu);
+                const Frame f = frame_in_texture<F>(frame_.n[i], s, scene_.program(s.material),
+                                                    shade_in_[i], scene_.textures());
                 frame_.set_shading(i, f);
                 lobes_.wo.set(i, f.to_local(wo[i]));
                 lobes_.even.set(i, f.to_local(frame_.even[i]));
@@ -359,10 +360,8 @@ private:
     // An emissive mesh says by its material what it sends.
     void look_at_emitter(int i) noexcept {
         if (light_.material[i] < 0) return;
-        ShadeInput in;
-        in.uv = light_.uv[i];
-        light_.radiance.set(
-            i, scene_.program(light_.material[i]).visible_emission(in, scene_.textures()));
+        light_.radiance.set(i, emitter_radiance(scene_, light_.material[i], light_.placement[i],
+                                                light_.uv[i], light_.p[i], light_.n[i]));
     }
 
     // What the lights give if nothing is in the way. Returns the lanes that it is worth a ray for.

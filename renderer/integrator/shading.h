@@ -8,7 +8,7 @@
 
 #include "materials/surface/openpbr.h"
 #include "renderer/core/robust.h"
-#include "renderer/scene/scene.h"
+#include "renderer/scene/point_input.h"
 
 namespace tessera {
 
@@ -56,22 +56,17 @@ inline Vec3f consistent_normal(Vec3f ns, Vec3f guard, Vec3f wo) {
     return pick(lift > 0.0f, normalize(normalize(mirrored + guard * lift) + wo), n);
 }
 
-/// A normal of a normal map, which lives in the frame of the unflipped shading normal.
-inline Vec3f map_normal(const SurfacePoint& s, Vec3f mapped, bool front) {
-    const Frame base = frame_along(s.ns, s.dpdu);
-    const Vec3f m = normalize(base.to_world({mapped.x, mapped.y * s.handed, mapped.z}));
-    return front ? m : -m;
-}
-
-/// The shading normal on the viewer's side, the normal map applied.
+/// The shading normal on the viewer's side, maps and bumps applied.
 template <Features F>
 Vec3f facing_normal(const SurfacePoint& s, const ShaderProgram& program, const ShadeInput& in,
                     const TextureStore* textures, bool front) {
-    Vec3f n = front ? s.ns : -s.ns;
     if constexpr (F.textures) {
-        if (program.has_normal_map()) n = map_normal(s, program.normal(in, textures), front);
+        if (program.bends_normal()) {
+            const Vec3f n = program.normal(in, textures);
+            return in.front == front ? n : -n;
+        }
     }
-    return n;
+    return front ? s.ns : -s.ns;
 }
 
 /// The coat's frame within the shading frame: over a bumpy base the coat is even, or has a normal
@@ -81,10 +76,13 @@ Frame coat_frame(const SurfacePoint& s, const ShaderProgram& program, const Shad
                  const TextureStore* textures, bool front, const Frame& shading, Vec3f guard,
                  Vec3f wo) {
     if (!program.facts().coat) return {};
-    if (!program.has_normal_map() && !program.has_coat_normal_map()) return {};
+    const bool bends = program.bends_coat_normal(), turns = program.turns_coat_tangent();
+    if (!program.bends_normal() && !bends && !turns) return {};
     Vec3f n = front ? s.ns : -s.ns;
-    if (program.has_coat_normal_map()) n = map_normal(s, program.coat_normal(in, textures), front);
-    return frame_along(consistent_normal(shading.to_local(n), guard, wo), {1, 0, 0});
+    if (bends) n = program.coat_normal(in, textures) * (in.front == front ? 1.0f : -1.0f);
+    const Vec3f along =
+        turns ? shading.to_local(program.coat_tangent(in, textures)) : Vec3f{1, 0, 0};
+    return frame_along(consistent_normal(shading.to_local(n), guard, wo), along);
 }
 
 /// Whether the material's look turns with the texture's frame.
@@ -92,6 +90,16 @@ template <Features F>
 bool frame_follows_texture(const ShaderProgram& program) {
     if constexpr (F.textures || F.specular) return program.facts().tangent;
     return false;
+}
+
+/// The frame with its first axis the way that highlights stretch.
+template <Features F>
+Frame frame_in_texture(Vec3f n, const SurfacePoint& s, const ShaderProgram& program,
+                       const ShadeInput& in, const TextureStore* textures) {
+    if constexpr (F.textures) {
+        if (program.turns_tangent()) return frame_along(n, program.tangent(in, textures));
+    }
+    return frame_along(n, s.dpdu);
 }
 
 template <Features F>
@@ -105,7 +113,8 @@ FacingFrame facing_frame(const SurfacePoint& s, const ShaderProgram& program, co
     f.guard = is_lifted(f.lift) ? f.even : f.ng;
     const Vec3f n =
         consistent_normal(facing_normal<F>(s, program, in, textures, f.front), f.guard, wo);
-    f.shading = frame_follows_texture<F>(program) ? frame_along(n, s.dpdu) : Frame(n);
+    f.shading = frame_follows_texture<F>(program) ? frame_in_texture<F>(n, s, program, in, textures)
+                                                  : Frame(n);
     f.wo = f.shading.to_local(wo);
     return f;
 }
@@ -142,12 +151,11 @@ ShadeInput shade_input(const Scene& scene, const ShaderProgram* program, const H
     if constexpr (F.vertex_colors) in.vertex_color = s.vertex_color;
     if constexpr (F.textures) {
         if (program && program->facts().geometry) {
-            in.p_object = scene.geometry().placements[s.placement].to_object.point(s.p);
-            in.p_world = Vec3f(Vec3d(s.p) + scene.origin());
-            in.n = dot(s.ns, d) <= 0.0f ? s.ns : -s.ns;
+            place_input(scene, s, in);
+            in.front = dot(s.ng, d) <= 0.0f;
+            if (!in.front) in.n = -s.ns;
             in.facing = std::fabs(dot(s.ns, d));
             in.p_width = cone_width / std::max(std::sqrt(std::fabs(dot(s.ng, d))), 0.2f);
-            in.instance = s.placement;
         }
     }
     return in;

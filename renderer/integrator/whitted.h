@@ -182,11 +182,9 @@ private:
         if (!sample_light(source, {v.s.p}, u, light)) return false;
         const Vec3f wi = v.frame.shading.to_local(light.wi);
         if (!same_side(light.wi, wi, v.frame.guard)) return false;
-        if (light.material >= 0) {
-            ShadeInput in;
-            in.uv = light.uv;
-            light.radiance = scene_.program(light.material).visible_emission(in, scene_.textures());
-        }
+        if (light.material >= 0)
+            light.radiance = emitter_radiance(scene_, light.material, light.placement, light.uv,
+                                              light.p, light.n);
         wi_.set(i, wi);
         pending_[i] = node_[i].weight * light.radiance * (1.0f / light.pdf);
         const Vec3f o = ray_origin(v.s.p, v.s.p_error, v.s.ng, v.frame.lift, light.wi, wi);

@@ -126,6 +126,7 @@ bool sample(const MeshLight& l, const LightReference& ref, Vec2f u, LightSample&
     const EmissiveFaces::Triangle& t = l.faces->triangles[pick.index];
     const Vec2f b = warp_triangle({pick.remainder, u.y});
     s.material = t.material;
+    s.placement = l.placement;
     s.uv = t.ta + t.tab * b.x + t.tac * b.y;
     Vec3f p = t.a + t.ab * b.x + t.ac * b.y, ab = t.ab, ac = t.ac;
     s.p_error = abs(t.a) * gamma_bound(9) + (abs(t.ab) + abs(t.ac)) * gamma_bound(9);
@@ -157,6 +158,7 @@ void LightSamples::set(int lane, const LightSample& s) {
     delta[lane] = s.delta;
     infinite[lane] = s.infinite;
     material[lane] = s.material;
+    placement[lane] = s.placement;
     uv[lane] = s.uv;
 }
 
