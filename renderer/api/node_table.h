@@ -81,6 +81,11 @@ enum class NodeOp : std::uint8_t {
 /// any: takes what it is given; as an output: what its inputs are.
 enum class NodeType : std::uint8_t { scalar, color, vector2, vector3, any };
 
+constexpr std::string_view name_of(NodeType type) {
+    constexpr std::string_view kNames[]{"number", "colour", "vector2", "vector3", "value"};
+    return kNames[static_cast<std::size_t>(type)];
+}
+
 struct NodeInputInfo {
     std::string_view name;
     NodeType type = NodeType::any;
