@@ -40,7 +40,7 @@ Vec3f output_of(const NodeResult& r, int output) {
 
 }  // namespace
 
-// An input for a place that is given none takes the surface's own.
+// An input for a place or normal that is given none takes the surface's own.
 Wire Graph::wire_of(const std::vector<NodeDesc>& nodes, const NodeDesc& desc, std::size_t input) {
     const NodeInputInfo& info = kNodes[static_cast<std::size_t>(desc.type)].inputs()[input];
     if (desc.given[input]) {
@@ -48,11 +48,12 @@ Wire Graph::wire_of(const std::vector<NodeDesc>& nodes, const NodeDesc& desc, st
         if (v.node >= 0) return add(nodes, v.node, v.output);
         return {-1, 0, Vec3f(v.value)};
     }
-    const bool place = info.name == "texcoord", position = info.name == "position";
-    if (place || position) {
+    for (const NodeOp op : {NodeOp::texcoord, NodeOp::position, NodeOp::normal}) {
+        const NodeInfo& of_surface = kNodes[static_cast<std::size_t>(op)];
+        if (info.name != of_surface.name) continue;
         Op own;
-        own.op = place ? NodeOp::texcoord : NodeOp::position;
-        own.inputs = place ? 0 : 1;
+        own.op = op;
+        own.inputs = static_cast<std::uint8_t>(of_surface.inputs().size());
         return add_op(desc, own);
     }
     const auto& i = info.initial;

@@ -75,6 +75,7 @@ enum class NodeOp : std::uint8_t {
     marble,
     cloth,
     rust,
+    flakes,
     layer,
 };
 
@@ -222,6 +223,10 @@ inline constexpr std::array kNodes{
              {{node_table::kAt, {"spread", NodeType::scalar, {0.4f, 0, 0}}, {"frequency", NodeType::scalar, {3, 0, 0}}, {"detail", NodeType::scalar, {0.6f, 0, 0}}, {"softness", NodeType::scalar, {0.15f, 0, 0}},
                {"dark", NodeType::color, {0.055f, 0.018f, 0.009f}}, {"bright", NodeType::color, {0.42f, 0.13f, 0.025f}}}},
              {{{"mask"}, {"height"}, {"roughness"}}}},
+    NodeInfo{NodeOp::flakes, "flakes", NodeType::vector3, "Flakes of metal paint: a unit normal in the world, tilted from flake to flake; flakes too small to be seen turn into roughness.",
+             {{node_table::kAt, {"normal", NodeType::vector3}, {"size", NodeType::scalar, {0.01f, 0, 0}}, {"coverage", NodeType::scalar, {0.5f, 0, 0}}, {"spread", NodeType::scalar, {0.4f, 0, 0}},
+               {"roughness", NodeType::scalar, {0.1f, 0, 0}}}},
+             {{{"mask"}, {"random"}, {"roughness"}}}},
     NodeInfo{NodeOp::layer, "layer", NodeType::any, "fg on bg by mask and a blend mode: 0 over, 1 multiply, 2 screen, 3 overlay, 4 add, 5 subtract, 6 max, 7 min, 8 soft light; bg is not read below a whole 'over'.",
              {{{"bg", NodeType::any}, {"fg", NodeType::any}, {"mask", NodeType::scalar, {1, 0, 0}}, {"blend", NodeType::scalar}}}},
 };

@@ -9,6 +9,7 @@ namespace {
 std::string initial_of(const NodeInputInfo& input) {
     if (input.name == "texcoord") return "the surface's";
     if (input.name == "position") return "the object's";
+    if (input.name == "normal") return "the surface's";
     const auto number = [](float v) { return params::json(static_cast<double>(v)); };
     const auto& v = input.initial;
     const bool one = input.type == NodeType::scalar || (v[0] == v[1] && v[1] == v[2]);
