@@ -2,10 +2,14 @@
 
 #include <cmath>
 
+#include "materials/nodes/edge_wear.h"
 #include "renderer/core/sampler.h"
 
 namespace tessera {
 namespace {
+
+// Flatter creases are those of a rounding, which is to be left alone.
+constexpr float kLeastCrease_deg = 2.0f;
 
 bool reads_point(NodeOp op) {
     switch (op) {
@@ -17,6 +21,7 @@ bool reads_point(NodeOp op) {
         case NodeOp::random:
         case NodeOp::image:
         case NodeOp::triplanar:
+        case NodeOp::edgewear:
             return true;
         default:
             return false;
@@ -109,8 +114,12 @@ Wire Graph::add_op(const NodeDesc& desc, const Op& op) {
     reads_uv_ |= op.op == NodeOp::texcoord || op.op == NodeOp::image;
     reads_geometry_ |= op.op == NodeOp::position || op.op == NodeOp::normal ||
                        op.op == NodeOp::facingratio || op.op == NodeOp::random ||
-                       op.op == NodeOp::triplanar;
+                       op.op == NodeOp::triplanar || op.op == NodeOp::edgewear;
     reads_color_ |= op.op == NodeOp::geomcolor;
+    if (op.op == NodeOp::edgewear) {
+        const float angle = op.in[2].op < 0 ? op.in[2].constant.x : 0.0f;
+        crease_angle_ = std::min(crease_angle_, std::max(angle, kLeastCrease_deg));
+    }
     ops_.push_back(op);
     return {static_cast<std::int16_t>(ops_.size() - 1), 0, {}};
 }
@@ -139,7 +148,8 @@ NodeResult GraphRun::run(const Graph::Op& op) noexcept {
         case NodeOp::texcoord:
             return {{in_.uv.x, in_.uv.y, 0.0f}, in_.uv_width, {}};
         case NodeOp::position:
-            return {value(op.in[0]).x > 0.5f ? in_.p_world : in_.p_object, in_.p_width, {}};
+            if (value(op.in[0]).x > 0.5f) return {in_.p_world, in_.p_width, {}};
+            return {in_.p_object, in_.p_width * in_.object_scale, {}};
         case NodeOp::normal:
             return {in_.n, 0.0f, {}};
         case NodeOp::geomcolor:
@@ -179,6 +189,12 @@ NodeResult GraphRun::run(const Graph::Op& op) noexcept {
             along(w.y, p.x, p.z);
             along(w.z, p.x, p.y);
             return {sum, 0.0f, {}};
+        }
+        case NodeOp::edgewear: {
+            if (!in_.creases) return {};
+            const NodeResult at = result(op.in[0]);
+            const EdgeWearParams wear{value(op.in[1]).x, value(op.in[2]).x, value(op.in[3]).x};
+            return {Vec3f(edge_wear(*in_.creases, at.v, wear, at.width, in_.front)), 0.0f, {}};
         }
         // What is decided by one input leaves the others alone.
         case NodeOp::mix: {

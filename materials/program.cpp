@@ -202,6 +202,7 @@ ShaderProgram::ShaderProgram(const MaterialDesc& desc) : m_(folded(desc)) {
     facts_.textured |= !graph_.empty();
     facts_.uv |= graph_.reads_uv();
     facts_.geometry = graph_.reads_geometry();
+    facts_.crease_angle_deg = graph_.crease_angle_deg();
     facts_.vertex_color |= graph_.reads_vertex_color();
     varies_ = !varying_.empty() || m_.use_vertex_color;
     p.thin_walled = m_.geometry_thin_walled;

@@ -76,6 +76,7 @@ enum class NodeOp : std::uint8_t {
     cloth,
     rust,
     flakes,
+    edgewear,
     layer,
 };
 
@@ -227,6 +228,8 @@ inline constexpr std::array kNodes{
              {{node_table::kAt, {"normal", NodeType::vector3}, {"size", NodeType::scalar, {0.01f, 0, 0}}, {"coverage", NodeType::scalar, {0.5f, 0, 0}}, {"spread", NodeType::scalar, {0.4f, 0, 0}},
                {"roughness", NodeType::scalar, {0.1f, 0, 0}}}},
              {{{"mask"}, {"random"}, {"roughness"}}}},
+    NodeInfo{NodeOp::edgewear, "edgewear", NodeType::scalar, "1 on convex edges of a mesh where faces meet at `angle` degrees or more, 0 from `width` on; `contrast` hardens the rim.",
+             {{node_table::kAt, {"width", NodeType::scalar, {0.02f, 0, 0}}, {"angle", NodeType::scalar, {30, 0, 0}}, {"contrast", NodeType::scalar, {1, 0, 0}}}}},
     NodeInfo{NodeOp::layer, "layer", NodeType::any, "fg on bg by mask and a blend mode: 0 over, 1 multiply, 2 screen, 3 overlay, 4 add, 5 subtract, 6 max, 7 min, 8 soft light; bg is not read below a whole 'over'.",
              {{{"bg", NodeType::any}, {"fg", NodeType::any}, {"mask", NodeType::scalar, {1, 0, 0}}, {"blend", NodeType::scalar}}}},
 };

@@ -142,12 +142,17 @@ ShadeInput shade_input(const Scene& scene, const ShaderProgram* program, const H
     if constexpr (F.vertex_colors) in.vertex_color = s.vertex_color;
     if constexpr (F.textures) {
         if (program && program->facts().geometry) {
-            in.p_object = scene.geometry().placements[s.placement].to_object.point(s.p);
+            const Placement& placed = scene.geometry().placements[s.placement];
+            in.p_object = placed.to_object.point(s.p);
+            in.object_scale = placed.object_scale;
             in.p_world = Vec3f(Vec3d(s.p) + scene.origin());
             in.n = dot(s.ns, d) <= 0.0f ? s.ns : -s.ns;
             in.facing = std::fabs(dot(s.ns, d));
             in.p_width = cone_width / std::max(std::sqrt(std::fabs(dot(s.ng, d))), 0.2f);
             in.instance = s.placement;
+            in.front = dot(s.ng, d) <= 0.0f;
+            if (program->facts().creases() && placed.kind == PlacedKind::mesh)
+                in.creases = &scene.geometry().meshes[placed.shape].creases;
         }
     }
     return in;
