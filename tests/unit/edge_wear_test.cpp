@@ -305,3 +305,27 @@ TEST_CASE("edge wear: creases are collected for materials that ask, by an instan
     add_sphere(ball, {0, 0, 0}, 1, worn);
     CHECK(seen(ball, {0, 0, 9}, {0, 0, 0}) == 0);
 }
+
+TEST_CASE("edge wear: a corner is worn on the side where it is an edge") {
+    const SceneFolder folder;
+    SceneDesc scene = worn_box(folder, kWorn);
+    MeshDesc corner = bent(-90);
+    corner.materials = scene.meshes[0].materials;
+    scene.meshes = {corner};
+    place(scene, ShapeKind::mesh, 0);
+    CHECK(seen(scene, {-0.25, 0, 5}, {-0.25, 0, 0}) == 0);
+    CHECK(seen(scene, {-0.25, 0, -5}, {-0.25, 0, 0}) == doctest::Approx(0.5).epsilon(1e-3));
+}
+
+TEST_CASE("edge wear: the footprint scales with the object") {
+    const SceneFolder folder;
+    const auto picture = [&](double scale) {
+        SceneDesc scene = worn_box(folder, kWorn);
+        place(scene, ShapeKind::mesh, 0, {scaled(scale, scale, scale, 0)});
+        look(scene, {0.7 * scale, 0, 5 * scale}, {0.7 * scale, 0, scale});
+        scene.camera.projection = Projection::orthographic;
+        scene.camera.ortho_height = 0.3 * scale;
+        return beauty_of(scene)[0];
+    };
+    CHECK(picture(16) == doctest::Approx(picture(1)).epsilon(1e-3));
+}
