@@ -2,11 +2,15 @@
 
 #include <cmath>
 
+#include "materials/nodes/edge_wear.h"
 #include "materials/relief.h"
 #include "renderer/core/sampler.h"
 
 namespace tessera {
 namespace {
+
+// Flatter creases are those of a rounding, which is to be left alone.
+constexpr float kLeastCrease_deg = 2.0f;
 
 bool reads_point(NodeOp op) {
     switch (op) {
@@ -21,6 +25,7 @@ bool reads_point(NodeOp op) {
         case NodeOp::tangent:
         case NodeOp::normalmap:
         case NodeOp::bump:
+        case NodeOp::edgewear:
             return true;
         default:
             return false;
@@ -113,10 +118,15 @@ Wire Graph::add_op(const NodeDesc& desc, const Op& op) {
     reads_uv_ |= op.op == NodeOp::texcoord || op.op == NodeOp::image;
     reads_geometry_ |= op.op == NodeOp::position || op.op == NodeOp::normal ||
                        op.op == NodeOp::facingratio || op.op == NodeOp::random ||
-                       op.op == NodeOp::triplanar || op.op == NodeOp::bump;
+                       op.op == NodeOp::triplanar || op.op == NodeOp::bump ||
+                       op.op == NodeOp::edgewear;
     reads_tangent_ |=
         op.op == NodeOp::tangent || op.op == NodeOp::normalmap || op.op == NodeOp::bump;
     reads_color_ |= op.op == NodeOp::geomcolor;
+    if (op.op == NodeOp::edgewear) {
+        const float angle = op.in[2].op < 0 ? op.in[2].constant.x : 0.0f;
+        crease_angle_ = std::min(crease_angle_, std::max(angle, kLeastCrease_deg));
+    }
     ops_.push_back(op);
     return {static_cast<std::int16_t>(ops_.size() - 1), 0, {}};
 }
@@ -145,7 +155,8 @@ NodeResult GraphRun::run(const Graph::Op& op) noexcept {
         case NodeOp::texcoord:
             return {{in_.uv.x, in_.uv.y, 0.0f}, in_.uv_width, {}};
         case NodeOp::position:
-            return {value(op.in[0]).x > 0.5f ? in_.p_world : in_.p_object, in_.p_width, {}};
+            if (value(op.in[0]).x > 0.5f) return {in_.p_world, in_.p_width, {}};
+            return {in_.p_object, in_.p_width * in_.object_scale, {}};
         case NodeOp::normal:
             return {in_.n, 0.0f, {}};
         case NodeOp::geomcolor:
@@ -198,6 +209,12 @@ NodeResult GraphRun::run(const Graph::Op& op) noexcept {
                 return GraphRun(graph_, at, store_).value(op.in[0]).x * scale;
             };
             return {bumped_normal(value(op.in[2]), in_, height), 0.0f, {}};
+        }
+        case NodeOp::edgewear: {
+            if (!in_.creases) return {};
+            const NodeResult at = result(op.in[0]);
+            const EdgeWearParams wear{value(op.in[1]).x, value(op.in[2]).x, value(op.in[3]).x};
+            return {Vec3f(edge_wear(*in_.creases, at.v, wear, at.width, in_.front)), 0.0f, {}};
         }
         // What is decided by one input leaves the others alone.
         case NodeOp::mix: {

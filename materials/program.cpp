@@ -207,6 +207,7 @@ ShaderProgram::ShaderProgram(const MaterialDesc& desc) : m_(folded(desc)) {
         facts_.uv |= graph->reads_uv();
         facts_.geometry |= graph->reads_geometry();
         facts_.tangent |= graph->reads_tangent();
+        facts_.crease_angle_deg = std::min(facts_.crease_angle_deg, graph->crease_angle_deg());
         facts_.vertex_color |= graph->reads_vertex_color();
     }
     varies_ = !varying_.empty() || m_.use_vertex_color;

@@ -36,6 +36,8 @@ struct ProgramFacts {
     bool tangent = false;   // reads dpdu
     bool geometry = false;  // reads position, normal or instance
     bool vertex_color = false;
+    float crease_angle_deg = kInfinity;  // of the creases that it asks for, at least
+    bool creases() const noexcept { return crease_angle_deg < kInfinity; }
 };
 
 class ShaderProgram {

@@ -7,6 +7,7 @@
 #include "materials/lobe.h"
 #include "materials/nodes/blend.h"
 #include "materials/nodes/color_math.h"
+#include "materials/nodes/flakes.h"
 #include "materials/nodes/noise.h"
 #include "materials/nodes/pattern.h"
 
@@ -254,6 +255,10 @@ NodeResult run_node(NodeOp op, const NodeResult* in) noexcept {
             p.dark = c(5), p.bright = c(6);
             const Rust r = rust(c(0), p, in[0].width);
             return {r.color, 0.0f, {r.mask, r.height, r.roughness}};
+        }
+        case NodeOp::flakes: {
+            const Flakes f = flakes(c(0), c(1), {n(2), n(3), n(4), n(5)}, in[0].width);
+            return {f.normal, 0.0f, {f.mask, f.random, f.roughness}};
         }
         default:
             return noise_node(op, in);

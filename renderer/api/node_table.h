@@ -79,11 +79,18 @@ enum class NodeOp : std::uint8_t {
     marble,
     cloth,
     rust,
+    flakes,
+    edgewear,
     layer,
 };
 
 /// any: takes what it is given; as an output: what its inputs are.
 enum class NodeType : std::uint8_t { scalar, color, vector2, vector3, any };
+
+constexpr std::string_view name_of(NodeType type) {
+    constexpr std::string_view kNames[]{"number", "colour", "vector2", "vector3", "value"};
+    return kNames[static_cast<std::size_t>(type)];
+}
 
 struct NodeInputInfo {
     std::string_view name;
@@ -225,6 +232,12 @@ inline constexpr std::array kNodes{
              {{node_table::kAt, {"spread", NodeType::scalar, {0.4f, 0, 0}}, {"frequency", NodeType::scalar, {3, 0, 0}}, {"detail", NodeType::scalar, {0.6f, 0, 0}}, {"softness", NodeType::scalar, {0.15f, 0, 0}},
                {"dark", NodeType::color, {0.055f, 0.018f, 0.009f}}, {"bright", NodeType::color, {0.42f, 0.13f, 0.025f}}}},
              {{{"mask"}, {"height"}, {"roughness"}}}},
+    NodeInfo{NodeOp::flakes, "flakes", NodeType::vector3, "Flakes of metal paint: a unit normal in the world, tilted from flake to flake; flakes too small to be seen turn into roughness.",
+             {{node_table::kAt, {"normal", NodeType::vector3}, {"size", NodeType::scalar, {0.01f, 0, 0}}, {"coverage", NodeType::scalar, {0.5f, 0, 0}}, {"spread", NodeType::scalar, {0.4f, 0, 0}},
+               {"roughness", NodeType::scalar, {0.1f, 0, 0}}}},
+             {{{"mask"}, {"random"}, {"roughness"}}}},
+    NodeInfo{NodeOp::edgewear, "edgewear", NodeType::scalar, "1 on convex edges of a mesh where faces meet at `angle` degrees or more, 0 from `width` on; `contrast` hardens the rim.",
+             {{node_table::kAt, {"width", NodeType::scalar, {0.02f, 0, 0}}, {"angle", NodeType::scalar, {30, 0, 0}}, {"contrast", NodeType::scalar, {1, 0, 0}}}}},
     NodeInfo{NodeOp::layer, "layer", NodeType::any, "fg on bg by mask and a blend mode: 0 over, 1 multiply, 2 screen, 3 overlay, 4 add, 5 subtract, 6 max, 7 min, 8 soft light; bg is not read below a whole 'over'.",
              {{{"bg", NodeType::any}, {"fg", NodeType::any}, {"mask", NodeType::scalar, {1, 0, 0}}, {"blend", NodeType::scalar}}}},
 };

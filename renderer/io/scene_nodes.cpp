@@ -16,22 +16,6 @@ const NodeInfo& info_of(const NodeDesc& node) {
     return kNodes[static_cast<std::size_t>(node.type)];
 }
 
-std::string name_of(NodeType type) {
-    switch (type) {
-        case NodeType::scalar:
-            return "a number";
-        case NodeType::color:
-            return "a colour";
-        case NodeType::vector2:
-            return "2 numbers";
-        case NodeType::vector3:
-            return "3 numbers";
-        case NodeType::any:
-            break;
-    }
-    return "a value";
-}
-
 // Numbers go everywhere; three numbers are three numbers; else the kinds must agree.
 bool fits(NodeType from, NodeType to) {
     if (to == NodeType::any || from == NodeType::scalar || from == to) return true;
@@ -268,8 +252,9 @@ std::optional<NodeValue> NodeReader::output_of(int node, const Value& table, Nod
     // An image gives a number where one is wanted: its red.
     const bool image = info.op == NodeOp::image || info.op == NodeOp::triplanar;
     if (!fits(type, wanted) && !image) {
-        at.problems.error(table.loc, at.subject + ": node '" + std::string(info.name) + "' gives " +
-                                         name_of(type) + ", wanted is " + name_of(wanted) +
+        at.problems.error(table.loc, at.subject + ": node '" + std::string(info.name) +
+                                         "' gives a " + std::string(name_of(type)) +
+                                         ", wanted is a " + std::string(name_of(wanted)) +
                                          " (see 'extract', 'luminance', 'combine3')");
         return std::nullopt;
     }

@@ -7,13 +7,16 @@ namespace tessera {
 
 /// The part of a ShadeInput that says where a point lies; its normal looks outward.
 inline void place_input(const Scene& scene, const SurfacePoint& s, ShadeInput& in) {
-    const Affinef& to_object = scene.geometry().placements[s.placement].to_object;
-    in.p_object = to_object.point(s.p);
+    const Placement& placed = scene.geometry().placements[s.placement];
+    in.p_object = placed.to_object.point(s.p);
+    in.object_scale = placed.object_scale;
     in.p_world = Vec3f(Vec3d(s.p) + scene.origin());
     in.n = s.ns;
     in.front = true;
     in.instance = s.placement;
-    in.to_object = &to_object;
+    in.to_object = &placed.to_object;
+    if (placed.kind == PlacedKind::mesh)
+        in.creases = &scene.geometry().meshes[placed.shape].creases;
     in.dpdu = s.dpdu, in.dpdv = s.dpdv, in.handed = s.handed;
 }
 

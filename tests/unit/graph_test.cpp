@@ -90,6 +90,11 @@ TEST_CASE("graph: what reads the point gets the point's") {
     CHECK(near(color_of("{ type = 'facingratio' }", in), Vec3f(0.5f)));
     CHECK(near(color_of("{ type = 'ramplr', valuel = 0, valuer = 4 }", in), Vec3f(1)));
     CHECK(near(color_of("{ type = 'ramptb', valuet = 4, valueb = 0 }", in), Vec3f(3)));
+    in.n = {0.6f, 0, 0.8f};
+    const std::string even = "{ type = 'flakes', size = 1, spread = 0";
+    CHECK(near(color_of(even + " }", in), {0.6f, 0, 0.8f}));
+    CHECK(near(color_of(even + ", normal = [0, 2, 0] }", in), {0, 1, 0}));
+    CHECK(near(color_of(even + ", coverage = 1, output = 'mask' }", in), Vec3f(1)));
     in.instance = 1;
     const Vec3f one = color_of("{ type = 'random' }", in);
     in.instance = 2;
