@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "renderer/io/mtlx.h"
 #include "renderer/io/scene_shapes.h"
 
 namespace tessera {
@@ -9,7 +10,7 @@ namespace {
 
 struct Root {
     int version = 0;
-    std::vector<std::string> include;
+    std::vector<std::string> include, materialx;
 };
 
 /// A row for a table that a part of the reader reads by itself.
@@ -27,6 +28,8 @@ const KeySet<Root>& root_rows() {
              key("tessera", &Root::version, "Version of the format: 1.", {.low = 1, .high = 1})
                  .must(),
              key("include", &Root::include, "Scene files whose tables are read before this one's."),
+             key("materialx", &Root::materialx,
+                 "MaterialX documents whose materials the scene may name."),
              table_row("camera", Kind::table, {&camera_keys()},
                        "The camera; absent, it frames the scene by itself."),
              table_row("film", Kind::table, {&film_keys()}, "The picture."),
@@ -100,7 +103,9 @@ SceneDesc read_scene(Value document, const std::string& path, const std::string&
     SceneReader reader{scene, problems, assets, folder};
     ShapeNames names;
     read_settings(document, reader);
+    read_materialx(document, reader);
     load_meshes(document, reader, names);
+    place_materialx(reader);
     read_materials(document, reader);
     read_shapes(document, reader, names);
     read_lights(document, reader);
