@@ -88,6 +88,7 @@ Result convert(Rewrite& r) {
     if (has_fourth(r.at.type) && !has_fourth(value.type))
         value.fourth = is_number(value.type) ? value.rgb : kOne;
     value.type = r.at.type;
+    value.kind = MtlxValue::Kind::plain;
     return value;
 }
 

@@ -145,7 +145,10 @@ private:
             in_.set(&M::specular_color, color);
         }
         in_.set(&M::specular_roughness, coated_roughness(in_.number("specular_roughness", 0.2f)));
-        in_.set(&M::specular_ior, in_.number("specular_IOR", 1.5f));
+        // Any number is allowed there, and 0 is met where specular is 0 too.
+        const MtlxValue index = in_.number("specular_IOR", 1.5f);
+        const bool unused = zero(weight) && !metal && zero(in_.number("transmission", 0));
+        if (!unused || !index.is_constant()) in_.set(&M::specular_ior, index);
         read_anisotropy("specular_anisotropy", "specular_rotation",
                         &M::specular_roughness_anisotropy);
     }

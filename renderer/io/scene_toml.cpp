@@ -28,8 +28,6 @@ const KeySet<Root>& root_rows() {
              key("tessera", &Root::version, "Version of the format: 1.", {.low = 1, .high = 1})
                  .must(),
              key("include", &Root::include, "Scene files whose tables are read before this one's."),
-             key("materialx", &Root::materialx,
-                 "MaterialX documents whose materials the scene may name."),
              table_row("camera", Kind::table, {&camera_keys()},
                        "The camera; absent, it frames the scene by itself."),
              table_row("film", Kind::table, {&film_keys()}, "The picture."),
@@ -44,6 +42,8 @@ const KeySet<Root>& root_rows() {
                        "A shape or group, placed once or many times."),
              table_row("light", Kind::tables, light_keys(), "A light."),
              table_row("material", Kind::named_tables, {&material_keys()}, "OpenPBR Surface."),
+             key("materialx", &Root::materialx,
+                 "MaterialX documents whose materials the scene may name."),
          }}};
     return keys;
 }
