@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kMaxBytes = std::uintmax_t(64) << 20;
-constexpr std::size_t kMaxElements = 200'000, kMaxAttributes = 4'000'000;
+constexpr std::size_t kMaxElements = 200'000, kMaxAttributes = 256;
 constexpr int kMaxNesting = 64;
 constexpr std::size_t kMaxIncludeDepth = 16;
 
@@ -113,8 +113,8 @@ public:
             element.loc = loc;
             element.parent = parent;
             for (const pugi::xml_attribute a : node.attributes()) {
-                if (++attributes_ > kMaxAttributes)
-                    throw Error(ExitCode::scene, loc, "more than 4 million attributes");
+                if (element.attributes.size() >= kMaxAttributes)
+                    throw Error(ExitCode::scene, loc, "more than 256 attributes");
                 element.attributes.emplace_back(a.name(), a.value());
             }
             for (const pugi::xml_node inner : node.children()) {
@@ -159,7 +159,6 @@ private:
     SceneReader& reader_;
     std::vector<std::string> open_;
     std::set<std::string> seen_;
-    std::size_t attributes_ = 0;
 };
 
 const std::string* MtlxElement::find(std::string_view attribute) const {

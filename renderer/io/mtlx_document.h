@@ -36,8 +36,8 @@ struct MtlxElement {
 class MtlxDocument {
 public:
     /// Throws Error(scene) for what is no MaterialX document: broken XML, entities and doctypes,
-    /// nesting beyond 64, more than 200 000 elements, includes in circles. Two of one name beside
-    /// each other are reported. `from` is where the scene names the file.
+    /// nesting beyond 64, more than 200 000 elements or 256 attributes of one, includes in circles.
+    /// Two of one name beside each other are reported. `from` is where the scene names the file.
     MtlxDocument(const std::string& path, const SourceLoc& from, SceneReader& reader);
     MtlxDocument(const MtlxDocument&) = delete;
     MtlxDocument& operator=(const MtlxDocument&) = delete;

@@ -9,12 +9,14 @@ namespace tessera {
 namespace {
 
 constexpr int kMaxDepth = 512;
-constexpr std::size_t kMaxNodes = 4096;
+constexpr std::size_t kMaxNodes = 4096, kMaxNodesOfAll = 1'000'000;
+constexpr std::size_t kMaxSuggested = 1000;  // names that a mistyped one is compared with
 
 std::vector<std::string> names_in(const MtlxElement* graph, const MtlxDocument& document) {
     std::vector<std::string> names;
     for (const MtlxElement* one : graph ? graph->children : document.top())
-        if (one->category != "input" && one->category != "output" && !one->name().empty())
+        if (names.size() < kMaxSuggested && one->category != "input" && one->category != "output" &&
+            !one->name().empty())
             names.push_back(one->name());
     return names;
 }
@@ -45,6 +47,9 @@ int MtlxGraph::push(NodeDesc node) {
     if (material_.nodes.size() >= kMaxNodes)
         throw Error(ExitCode::scene, node.loc,
                     "material '" + material_.name + "': its graph has more than 4096 nodes");
+    if (++reading_.nodes > kMaxNodesOfAll)
+        throw Error(ExitCode::scene, node.loc,
+                    "the graphs of its materials have more than a million nodes in all");
     material_.nodes.push_back(std::move(node));
     return static_cast<int>(material_.nodes.size()) - 1;
 }
@@ -184,7 +189,8 @@ std::optional<MtlxValue> MtlxGraph::from_graph(const MtlxElement& element, const
     if (!graph || graph->category != "nodegraph") {
         std::vector<std::string> names;
         for (const MtlxElement* one : reading_.document.top())
-            if (one->category == "nodegraph") names.push_back(one->name());
+            if (names.size() < kMaxSuggested && one->category == "nodegraph")
+                names.push_back(one->name());
         damage(element.loc, element.subject() + ": there is no nodegraph '" + name + "'" +
                                 did_you_mean(name, names));
         return std::nullopt;

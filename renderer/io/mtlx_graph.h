@@ -20,6 +20,7 @@ struct MtlxReading {
     SceneReader& reader;
     const ColorSpaces& colors;
     std::multimap<std::string_view, const MtlxElement*> definitions = {};  // nodedefs by category
+    std::size_t nodes = 0;                                                 // of all its materials
     std::set<std::string> said = {};  // problems of what several materials use are told once
 
     /// Something that cannot be read: an error, and left out when lenient.
@@ -64,7 +65,8 @@ public:
 
     /// Adds a node with all its inputs given, and yields its main output.
     NodeValue emit(NodeOp op, std::initializer_list<NodeValue> inputs, const SourceLoc& loc);
-    /// Adds a node as it is; returns its index. Throws Error(scene) past 4096.
+    /// Adds a node as it is; returns its index. Throws Error(scene) past 4096, or past a million of
+    /// all materials.
     int push(NodeDesc node);
     NodeValue product(const NodeValue& value, float factor, const SourceLoc& loc);
 

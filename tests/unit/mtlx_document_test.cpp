@@ -110,6 +110,9 @@ TEST_CASE("mtlx: nesting and counts beyond reason are refused") {
     std::string many;
     for (int i = 0; i < 200'001; ++i) many += "<a/>\n";
     CHECK(folder.refusal(mtlx(many)).find("more than 200 000 elements") != std::string::npos);
+    std::string wide = "<a ";
+    for (int i = 0; i < 257; ++i) wide += "b" + std::to_string(i) + "='' ";
+    CHECK(folder.refusal(mtlx(wide + "/>")) == "a.mtlx:3:1: more than 256 attributes");
 }
 
 TEST_CASE("mtlx: two of one name beside each other are refused, in one document or in two") {

@@ -239,6 +239,24 @@ TEST_CASE("mtlx graph: chains too long and graphs that multiply are refused") {
     const MtlxFolder folder;
     CHECK(folder.refusal(graph_document(chain, "color3", "n600")).find("deeper than 512") !=
           std::string::npos);
+    // Many materials, each of them of a graph of many nodes.
+    std::string crowd;
+    for (int i = 0; i < 3000; ++i)
+        crowd +=
+            "<add name='n" + std::to_string(i) + "' type='color3'>" +
+            (i > 1 ? input("in1", "color3", "nodename='n" + std::to_string(i / 2) + "'") : "") +
+            "</add>";
+    for (int i = 0; i < 90'000; ++i)
+        crowd += "<surfacematerial name='m" + std::to_string(i) + "'>" +
+                 input("surfaceshader", "surfaceshader", "nodename='s'") + "</surfacematerial>";
+    std::string inputs;
+    int wanted = 2990;
+    visit_openpbr([&]<class Input>(Input MaterialDesc::*, const OpenPbrInput& info) {
+        if constexpr (std::is_same_v<Input, ColorInput>)
+            inputs += input(info.name, "color3", "nodename='n" + std::to_string(wanted++) + "'");
+    });
+    CHECK(folder.refusal(mtlx_surface(inputs, crowd)).find("more than a million nodes") !=
+          std::string::npos);
     // Twelve definitions, each of four of the next: sixteen million nodes.
     std::string bombs;
     for (int i = 0; i < 12; ++i) {
