@@ -286,6 +286,16 @@ Result blend(Rewrite& r) {
     });
 }
 
+/// A share for each component is more than our node takes.
+Result mix(Rewrite& r) {
+    const MtlxValue fg = r.matching("fg"), bg = r.matching("bg"), share = r.matching("mix");
+    return r.each({fg, bg, share}, [&](const Values& v) {
+        if (is_number(share.type)) return r.emit(NodeOp::mix, {v[0], v[1], v[2]});
+        const NodeValue way = r.emit(NodeOp::subtract, {v[0], v[1]});
+        return r.emit(NodeOp::add, {v[1], r.emit(NodeOp::multiply, {way, v[2]})});
+    });
+}
+
 Result ramp4(Rewrite& r) {
     NodeValue place;
     const bool placed = r.at.node.child("texcoord") != nullptr;
@@ -327,6 +337,7 @@ const std::vector<Row>& rows() {
         {"safepower", arithmetic, {"in1", "in2"}},
         {"distance", distance, {"in1", "in2"}},
         {"range", range, {"in", "inlow", "inhigh", "gamma", "outlow", "outhigh", "doclamp"}},
+        {"mix", mix, {"fg", "bg", "mix"}},
         {"plus", blend, {"fg", "bg", "mix"}},
         {"minus", blend, {"fg", "bg", "mix"}},
         {"difference", blend, {"fg", "bg", "mix"}},

@@ -49,6 +49,9 @@ TEST_CASE("mtlx graph: nodes of the table give what they say") {
                         input("bg", "color3", "value='0,0,1'") +
                         input("mix", "float", "value='0.25'") + "</mix>"),
                {0.25f, 0, 0.75f}));
+    CHECK(near(color_of("<mix name='n' type='color3'>" + input("fg", "color3", "value='1,1,1'") +
+                        input("mix", "color3", "value='0.25,0.5,1'") + "</mix>"),
+               {0.25f, 0.5f, 1}));
     CHECK(number_of("<luminance name='l' type='color3'>" + input("in", "color3", "value='1,1,1'") +
                     "</luminance><extract name='n' type='float'>" +
                     input("in", "color3", "nodename='l'") + input("index", "integer", "value='2'") +
@@ -200,7 +203,7 @@ TEST_CASE("mtlx graph: colours are taken from their colour space to the working 
     CHECK(red("colorspace='lin_rec709'", "colorspace='srgb_texture'")[0] ==
           doctest::Approx(linear));
     CHECK(red("colorspace='srgb_texture'", "colorspace='raw'")[0] == 0.5f);
-    // Grey stays grey in other primaries; red does not.
+    // Grey stays grey in other primaries.
     CHECK(red("colorspace='lin_rec709'", "", "[film]\nworking_space = 'acescg'")[0] ==
           doctest::Approx(0.5f).epsilon(1e-3));
     CHECK(folder
