@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "materials/relief.h"
 #include "renderer/core/sampler.h"
 
 namespace tessera {
@@ -17,6 +18,9 @@ bool reads_point(NodeOp op) {
         case NodeOp::random:
         case NodeOp::image:
         case NodeOp::triplanar:
+        case NodeOp::tangent:
+        case NodeOp::normalmap:
+        case NodeOp::bump:
             return true;
         default:
             return false;
@@ -40,7 +44,7 @@ Vec3f output_of(const NodeResult& r, int output) {
 
 }  // namespace
 
-// An input for a place that is given none takes the surface's own.
+// An input for a place or normal that is given none takes the surface's own.
 Wire Graph::wire_of(const std::vector<NodeDesc>& nodes, const NodeDesc& desc, std::size_t input) {
     const NodeInputInfo& info = kNodes[static_cast<std::size_t>(desc.type)].inputs()[input];
     if (desc.given[input]) {
@@ -48,11 +52,12 @@ Wire Graph::wire_of(const std::vector<NodeDesc>& nodes, const NodeDesc& desc, st
         if (v.node >= 0) return add(nodes, v.node, v.output);
         return {-1, 0, Vec3f(v.value)};
     }
-    const bool place = info.name == "texcoord", position = info.name == "position";
-    if (place || position) {
+    for (const NodeOp op : {NodeOp::texcoord, NodeOp::position, NodeOp::normal}) {
+        const NodeInfo& of_surface = kNodes[static_cast<std::size_t>(op)];
+        if (info.name != of_surface.name) continue;
         Op own;
-        own.op = place ? NodeOp::texcoord : NodeOp::position;
-        own.inputs = place ? 0 : 1;
+        own.op = op;
+        own.inputs = static_cast<std::uint8_t>(of_surface.inputs().size());
         return add_op(desc, own);
     }
     const auto& i = info.initial;
@@ -108,7 +113,9 @@ Wire Graph::add_op(const NodeDesc& desc, const Op& op) {
     reads_uv_ |= op.op == NodeOp::texcoord || op.op == NodeOp::image;
     reads_geometry_ |= op.op == NodeOp::position || op.op == NodeOp::normal ||
                        op.op == NodeOp::facingratio || op.op == NodeOp::random ||
-                       op.op == NodeOp::triplanar;
+                       op.op == NodeOp::triplanar || op.op == NodeOp::bump;
+    reads_tangent_ |=
+        op.op == NodeOp::tangent || op.op == NodeOp::normalmap || op.op == NodeOp::bump;
     reads_color_ |= op.op == NodeOp::geomcolor;
     ops_.push_back(op);
     return {static_cast<std::int16_t>(ops_.size() - 1), 0, {}};
@@ -178,6 +185,19 @@ NodeResult GraphRun::run(const Graph::Op& op) noexcept {
             along(w.y, p.x, p.z);
             along(w.z, p.x, p.y);
             return {sum, 0.0f, {}};
+        }
+        case NodeOp::tangent:
+            return {frame_along(outward_normal(in_), in_.dpdu).s, 0.0f, {}};
+        case NodeOp::normalmap: {
+            const Vec3f local = unpacked_normal(value(op.in[0]), value(op.in[1]).x);
+            return {normal_from_tangent_space(in_, local), 0.0f, {}};
+        }
+        case NodeOp::bump: {
+            const float scale = value(op.in[1]).x;
+            const auto height = [&](const ShadeInput& at) {
+                return GraphRun(graph_, at, store_).value(op.in[0]).x * scale;
+            };
+            return {bumped_normal(value(op.in[2]), in_, height), 0.0f, {}};
         }
         // What is decided by one input leaves the others alone.
         case NodeOp::mix: {

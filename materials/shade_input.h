@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "renderer/core/affine.h"
 #include "renderer/core/vec.h"
 
 namespace tessera {
@@ -17,6 +18,11 @@ struct ShadeInput {
     float p_width = 0;        // footprint on the surface, scene units
     float facing = 1;         // |cosine| to the viewer
     std::uint32_t instance = 0;
+    const Affinef* to_object = nullptr;  // from the scene; null: that is the object's space
+    // And those that say `tangent`:
+    Vec3f dpdu, dpdv;   // in the world; zero if there are no texture coordinates
+    float handed = 1;   // -1 where the uv chart is mirrored
+    bool front = true;  // n looks outward
 };
 
 }  // namespace tessera

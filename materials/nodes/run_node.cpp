@@ -128,6 +128,14 @@ NodeResult arithmetic(NodeOp op, const NodeResult* in) {
             return in[1 + whole(a.x, 0, 4)];
         case NodeOp::rotate2d:
             return turned(in[0], b.x);
+        case NodeOp::rotate3d: {
+            // Rodrigues' formula, 1840.
+            const float l2 = length2(in[2].v), turn = b.x * (kPi / 180.0f);
+            if (!(l2 > 0.0f)) return in[0];
+            const Vec3f axis = in[2].v * (1.0f / std::sqrt(l2));
+            const float c = std::cos(turn), s = std::sin(turn);
+            return {a * c + cross(axis, a) * s + axis * (dot(axis, a) * (1.0f - c)), 0.0f, {}};
+        }
         case NodeOp::place2d: {
             NodeResult p = in[0];
             const Vec3f pivot = b, scale = in[2].v, offset = in[4].v;

@@ -228,6 +228,7 @@ std::optional<MtlxValue> MtlxGraph::from_geometry(const MtlxElement& element,
         out.rgb = emit(NodeOp::normal, {}, element.loc);
         out.kind = MtlxValue::Kind::surface_normal;
     } else if (name == "Tworld") {
+        out.rgb = emit(NodeOp::tangent, {}, element.loc);
         out.kind = MtlxValue::Kind::surface_tangent;
     } else {
         damage(element.loc, element.subject() + ": defaultgeomprop '" + name +

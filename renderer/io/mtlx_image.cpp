@@ -230,31 +230,25 @@ std::optional<MtlxValue> read_mtlx_normal_map(MtlxGraph& graph, const At& at) {
     }
     if (graph.text(at, "space", "tangent") != "tangent")
         graph.damage(at, "space is not 'tangent': only maps in tangent space are read");
-    MtlxValue out{.type = MtlxType::vector3, .kind = Kind::surface_normal, .source = &at.node};
-    const auto in = graph.input(at, "in");
-    if (!in) {
-        out.rgb = graph.emit(NodeOp::normal, {}, at.node.loc);
-        return out;  // the default is a flat map
+    NodeDesc node = make_node(NodeOp::normalmap, at.node.loc);
+    const auto give = [&](std::size_t input, const NodeValue& value) {
+        node.inputs[input] = value;
+        node.given[input] = true;
+    };
+    if (const auto in = graph.input(at, "in")) {
+        if (in->type != MtlxType::vector3)
+            graph.damage(at,
+                         "in is of type " + std::string(name_of(in->type)) + ", must be vector3");
+        give(0, in->rgb);
     }
-    const auto scale = graph.input(at, "scale");
-    if (scale) {
+    if (const auto scale = graph.input(at, "scale")) {
         const Float3& s = scale->rgb.value;
-        const bool even = is_number(scale->type) || s[0] == s[1];
-        if (!scale->is_constant() || !even || s[0] < 0)
-            graph.damage(at, "scale must be one written number, 0 or more");
-        else
-            out.scale = s[0];
+        const bool even = is_number(scale->type) || (scale->is_constant() && s[0] == s[1]);
+        if (!even) graph.damage(at, "scale must be one number");
+        give(1, scale->is_constant() ? node_constant(s[0]) : scale->rgb);
     }
-    const auto image = plain_image(graph, in->rgb);
-    const bool whole = image && image->channel == Channel::automatic && !image->invert &&
-                       image->factor == Float3{1, 1, 1};
-    if (!whole) {
-        graph.damage(at, "in must be an image at the surface's texture coordinates");
-        return std::nullopt;
-    }
-    out.kind = Kind::normal_map;
-    out.texture = image->texture;
-    return out;
+    return MtlxValue{
+        .type = MtlxType::vector3, .rgb = {{}, graph.push(std::move(node))}, .source = &at.node};
 }
 
 std::optional<MtlxPlainImage> plain_image(MtlxGraph& graph, const NodeValue& value) {

@@ -67,7 +67,7 @@ bool gives(const NodeInfo& info, MtlxType type) {
 
 /// MaterialX's reference turns coordinates the other way round than our node does.
 bool turns(NodeOp op, std::string_view input) {
-    return (op == NodeOp::rotate2d && input == "amount") ||
+    return ((op == NodeOp::rotate2d || op == NodeOp::rotate3d) && input == "amount") ||
            (op == NodeOp::place2d && input == "rotate");
 }
 
@@ -88,7 +88,6 @@ public:
         const int output = output_number();
         if (output < 0) return std::nullopt;
         if (output > 0) out.type = MtlxType::scalar;
-        if (info_.op == NodeOp::normal) out.kind = Kind::surface_normal;
         out.rgb = {{}, graph_.push(std::move(desc_)), output};
         if (has_fourth(out.type)) out.fourth = componentwise() ? fourth_of() : alpha_;
         return out;
@@ -121,11 +120,6 @@ private:
         if (input == inputs.end()) return read_beside(element, name);
         auto value = graph_.value_of(element, at_.scope);
         if (!value) return;
-        if (value->kind == Kind::normal_map || value->kind == Kind::surface_tangent) {
-            graph_.damage(element.loc, at_.node.subject() + ": " + name +
-                                           ": mapped normals and tangents go to a surface only");
-            return;
-        }
         if (!fits(value->type, input->type, at_.type)) {
             graph_.damage(element.loc, at_.node.subject() + ": " + name + " is of type " +
                                            std::string(name_of(value->type)) +
@@ -154,6 +148,13 @@ private:
                  (value->is_constant() && is_number(value->type) && value->rgb.value[0] == 0));
             if (value && !zero)
                 graph_.damage(element.loc, at_.node.subject() + ": " + name + " must be 0 here");
+            return;
+        }
+        if (info_.op == NodeOp::bump && (name == "tangent" || name == "bitangent")) {
+            const auto value = graph_.value_of(element, at_.scope);
+            if (value && value->kind != Kind::surface_tangent)
+                graph_.damage(element.loc,
+                              at_.node.subject() + ": " + name + " must be the surface's own");
             return;
         }
         if (name == "lumacoeffs") {
@@ -213,14 +214,14 @@ std::optional<MtlxValue> read_position(MtlxGraph& graph, const At& at) {
 
 std::optional<MtlxValue> read_direction(MtlxGraph& graph, const At& at) {
     MtlxValue out{.type = MtlxType::vector3, .source = &at.node};
-    // A whole surface's normal or tangent means the same in any space; numbers do not.
     const std::string space = graph.text(at, "space", "object");
     if (space != "world") {
         graph.damage(at, "space is '" + space + "', only 'world' is here");
         return std::nullopt;
     }
     out.kind = at.node.category == "normal" ? Kind::surface_normal : Kind::surface_tangent;
-    if (at.node.category == "normal") out.rgb = graph.emit(NodeOp::normal, {}, at.node.loc);
+    const NodeOp op = at.node.category == "normal" ? NodeOp::normal : NodeOp::tangent;
+    out.rgb = graph.emit(op, {}, at.node.loc);
     return out;
 }
 

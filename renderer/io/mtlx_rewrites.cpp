@@ -19,21 +19,13 @@ struct Rewrite {
     /// An input, or what it is by default; of the node's type or a number.
     MtlxValue in(std::string_view name, float otherwise = 0) {
         if (const MtlxElement* element = at.node.child(name)) {
-            if (const Result value = graph.value_of(*element, at.scope)) {
-                if (is_usable(*value)) return *value;
-                graph.damage(element->loc,
-                             at.node.subject() + ": mapped normals go to a surface only");
-            }
+            if (const Result value = graph.value_of(*element, at.scope)) return *value;
             good = false;
         }
         return {.type = at.type,
                 .rgb = node_constant(otherwise),
                 .fourth = node_constant(otherwise),
                 .source = &at.node};
-    }
-    bool is_usable(const MtlxValue& value) const {
-        return value.kind == MtlxValue::Kind::plain ||
-               value.kind == MtlxValue::Kind::surface_normal || at.node.category == "dot";
     }
     MtlxValue matching(std::string_view name, float otherwise = 0) {
         MtlxValue value = in(name, otherwise);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "renderer/io/mtlx_surface.h"
+#include "renderer/io/scene_layers.h"
 
 namespace tessera {
 namespace {
@@ -150,7 +151,7 @@ private:
         const bool unused = zero(weight) && !metal && zero(in_.number("transmission", 0));
         if (!unused || !index.is_constant()) in_.set(&M::specular_ior, index);
         read_anisotropy("specular_anisotropy", "specular_rotation",
-                        &M::specular_roughness_anisotropy);
+                        &M::specular_roughness_anisotropy, &M::geometry_tangent);
     }
 
     /// A rough coat may roughen what lies below: towards 1 by coat, its roughness and
@@ -173,14 +174,22 @@ private:
                     graph_.emit(N::mix, {node_constant(1), roughness.rgb, share}, loc()));
     }
 
+    /// Rotation is in turns about the normal, the other way round as MaterialX's nodes turn.
     void read_anisotropy(std::string_view amount, std::string_view rotation,
-                         FloatInput MaterialDesc::*member) {
+                         FloatInput MaterialDesc::*member, NormalInput MaterialDesc::*tangent) {
         const MtlxValue value = in_.number(amount, 0);
         in_.set(member, value);
+        in_.set_normal("tangent", tangent);
         const MtlxValue turn = in_.number(rotation, 0);
         const float half_turns = turn.rgb.value[0] * 2;  // half a turn changes nothing
         const bool turned = !turn.is_constant() || half_turns != std::floor(half_turns);
-        if (turned && !zero(value)) in_.unsupported(rotation);
+        if (!turned || zero(value)) return;
+        const auto given = in_.given("tangent");
+        const NodeValue along = given ? given->rgb : graph_.emit(N::tangent, {}, loc());
+        const NodeValue degrees = graph_.product(turn.rgb, -360, loc());
+        const NodeValue normal = graph_.emit(N::normal, {}, loc());
+        set_input(graph_.material().*tangent,
+                  graph_.emit(N::rotate3d, {along, degrees, normal}, loc()));
     }
 
     void read_inside() {
@@ -233,7 +242,8 @@ private:
         in_.set(&M::coat_weight, in_.number("coat", 0));
         in_.set(&M::coat_color, in_.color("coat_color", {1, 1, 1}));
         in_.set(&M::coat_roughness, in_.number("coat_roughness", 0.1f));
-        read_anisotropy("coat_anisotropy", "coat_rotation", &M::coat_roughness_anisotropy);
+        read_anisotropy("coat_anisotropy", "coat_rotation", &M::coat_roughness_anisotropy,
+                        &M::geometry_coat_tangent);
         in_.set(&M::coat_ior, in_.number("coat_IOR", 1.5f));
         in_.set(&M::coat_darkening, in_.number("", 0));  // coat_affect_color stands for it
 
@@ -256,9 +266,8 @@ private:
 
     void read_geometry() {
         in_.set_thin_walled("thin_walled");
-        in_.set_normal("normal", &M::geometry_normal, &M::geometry_normal_scale);
-        in_.set_normal("coat_normal", &M::geometry_coat_normal, &M::geometry_coat_normal_scale);
-        in_.check_tangent("tangent");
+        in_.set_normal("normal", &M::geometry_normal);
+        in_.set_normal("coat_normal", &M::geometry_coat_normal);
         read_opacity();
     }
 
@@ -276,10 +285,12 @@ private:
             return in_.set(&M::geometry_opacity, grey);
         }
         const auto image = plain_image(graph_, color.rgb);
-        if (!image || image->factor[0] != image->factor[1] || image->factor[1] != image->factor[2])
-            return graph_.damage(in_.loc("opacity"), shader_.node.subject() +
-                                                         ": opacity takes colours and images, no "
-                                                         "nodes");
+        const bool even =
+            image && image->factor[0] == image->factor[1] && image->factor[1] == image->factor[2];
+        if (!even) {
+            grey.rgb = graph_.emit(N::luminance, {color.rgb}, loc());
+            return in_.set(&M::geometry_opacity, grey);
+        }
         const bool whole = image->channel == Channel::automatic;
         graph_.material().geometry_opacity = {image->factor[0], image->texture,
                                               whole ? Channel::luminance : image->channel,

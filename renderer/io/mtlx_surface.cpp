@@ -63,7 +63,7 @@ void MtlxInputs::set(FloatInput MaterialDesc::*member, const MtlxValue& value) {
     FloatInput& input = graph_.material().*member;
     const SourceLoc& loc = value.source->loc;
     const std::string subject = shader_.node.subject() + ": " + info.name;
-    if (!is_number(value.type) || value.kind != Kind::plain)
+    if (!is_number(value.type))
         return graph_.damage(
             loc, subject + " takes a number, not type " + std::string(name_of(value.type)));
     if (value.is_constant()) {
@@ -80,8 +80,6 @@ void MtlxInputs::set(FloatInput MaterialDesc::*member, const MtlxValue& value) {
         input = {image->factor[0], image->texture, image->channel, image->invert};
         return;
     }
-    if (!takes_nodes(member))
-        return graph_.damage(loc, subject + " takes numbers and images, no nodes");
     set_input(input, value.rgb);
 }
 
@@ -90,7 +88,7 @@ void MtlxInputs::set(ColorInput MaterialDesc::*member, const MtlxValue& value) {
     ColorInput& input = graph_.material().*member;
     const SourceLoc& loc = value.source->loc;
     const std::string subject = shader_.node.subject() + ": " + info.name;
-    if (value.type != MtlxType::color3 || value.kind != Kind::plain)
+    if (value.type != MtlxType::color3)
         return graph_.damage(
             loc, subject + " takes a color3, not type " + std::string(name_of(value.type)));
     if (value.is_constant()) {
@@ -110,8 +108,6 @@ void MtlxInputs::set(ColorInput MaterialDesc::*member, const MtlxValue& value) {
         input = {image->factor, image->texture};
         return;
     }
-    if (!takes_nodes(member))
-        return graph_.damage(loc, subject + " takes colours and images, no nodes");
     set_input(input, value.rgb);
 }
 
@@ -124,19 +120,21 @@ void MtlxInputs::set_thin_walled(std::string_view name) {
         graph_.damage(loc(name), subject(name) + " must be true or false");
 }
 
-void MtlxInputs::set_normal(std::string_view name, int MaterialDesc::*texture,
-                            float MaterialDesc::*scale) {
+void MtlxInputs::set_normal(std::string_view name, NormalInput MaterialDesc::*member) {
     const auto value = given(name);
-    if (!value || value->kind == Kind::surface_normal) return;
-    if (value->kind != Kind::normal_map)
-        return graph_.damage(loc(name), subject(name) + " takes a 'normalmap' of an image");
-    graph_.material().*texture = value->texture;
-    graph_.material().*scale = value->scale;
-}
-
-void MtlxInputs::check_tangent(std::string_view name) {
-    const auto value = given(name);
-    if (value && value->kind != Kind::surface_tangent) unsupported(name);
+    if (!value || value->kind != Kind::plain) return;
+    NormalInput& input = graph_.material().*member;
+    if (value->type != MtlxType::vector3 || value->is_constant())
+        return graph_.damage(loc(name), subject(name) + " takes nodes that give a vector3");
+    const NodeDesc node = graph_.material().nodes[static_cast<std::size_t>(value->rgb.node)];
+    const bool map = kNodes[static_cast<std::size_t>(node.type)].op == NodeOp::normalmap;
+    const bool even = map && node.inputs[1].node < 0;
+    const auto image = even ? plain_image(graph_, node.inputs[0]) : std::nullopt;
+    if (image && image->channel == Channel::automatic && !image->invert &&
+        image->factor == Float3{1, 1, 1})
+        input = {image->texture, node.given[1] ? node.inputs[1].value[0] : 1.0f};
+    else
+        set_input(input, value->rgb);
 }
 
 void MtlxInputs::check_names(const std::vector<std::string>& names) {
@@ -156,19 +154,18 @@ void MtlxInputs::unsupported(std::string_view name, const std::string& why) {
 
 void read_open_pbr_surface(MtlxGraph& graph, const MtlxGraph::NodeAt& shader) {
     MtlxInputs in(graph, shader);
-    std::vector<std::string> names{"geometry_thin_walled", "geometry_normal", "geometry_tangent",
-                                   "geometry_coat_normal", "geometry_coat_tangent"};
+    std::vector<std::string> names{"geometry_thin_walled"};
     visit_openpbr([&](auto member, const OpenPbrInput& info) {
+        if (std::string_view(info.name) == "bump") return;  // ours alone
         names.emplace_back(info.name);
         if (const auto value = in.given(info.name)) in.set(member, *value);
     });
+    for (const NormalKey& normal : kNormalKeys) {
+        names.emplace_back(normal.name);
+        in.set_normal(normal.name, normal.member);
+    }
     in.check_names(names);
     in.set_thin_walled("geometry_thin_walled");
-    using M = MaterialDesc;
-    in.set_normal("geometry_normal", &M::geometry_normal, &M::geometry_normal_scale);
-    in.set_normal("geometry_coat_normal", &M::geometry_coat_normal, &M::geometry_coat_normal_scale);
-    in.check_tangent("geometry_tangent");
-    in.check_tangent("geometry_coat_tangent");
 }
 
 }  // namespace tessera

@@ -23,9 +23,8 @@ public:
     void set(FloatInput MaterialDesc::*member, const MtlxValue& value);
     void set(ColorInput MaterialDesc::*member, const MtlxValue& value);
     void set_thin_walled(std::string_view name);
-    void set_normal(std::string_view name, int MaterialDesc::*texture, float MaterialDesc::*scale);
-    /// A tangent other than the surface's own is told of, and not used.
-    void check_tangent(std::string_view name);
+    /// A normal or tangent.
+    void set_normal(std::string_view name, NormalInput MaterialDesc::*member);
     /// Reports inputs that are none of names.
     void check_names(const std::vector<std::string>& names);
     void unsupported(std::string_view name, const std::string& why = "");

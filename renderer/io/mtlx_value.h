@@ -33,19 +33,17 @@ inline bool has_fourth(MtlxType t) { return t == MtlxType::color4 || t == MtlxTy
 /// Components; 0 for what is none.
 int width_of(MtlxType type);
 
-/// What an input is given: something a node takes, or one of a few things that are no number.
+/// What an input is given: something a node takes, or a text.
 struct MtlxValue {
-    enum class Kind : std::uint8_t { plain, surface_normal, surface_tangent, normal_map };
+    enum class Kind : std::uint8_t { plain, surface_normal, surface_tangent };  // its own
     MtlxType type = MtlxType::scalar;
     NodeValue rgb = {};           // a number stands in all three places
     NodeValue fourth{{1, 1, 1}};  // of color4 and vector4
     Kind kind = Kind::plain;
-    int texture = -1;  // of a normal map
-    float scale = 1;
     std::string text = {};                // of string and filename
     const MtlxElement* source = nullptr;  // the element that says so
 
-    bool is_constant() const { return kind == Kind::plain && rgb.node < 0; }
+    bool is_constant() const { return rgb.node < 0; }
 };
 
 /// The numbers of a text, "0.2, 0.5"; nothing when it holds anything else, or what is not finite.

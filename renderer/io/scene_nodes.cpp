@@ -378,6 +378,52 @@ NodeValue NodeReader::node_of(const ColorInput& input) {
     return {{}, index};
 }
 
+NodeValue NodeReader::node_of(const NormalInput& input, bool normal) {
+    if (input.node >= 0) return {{}, input.node, input.output};
+    if (input.texture < 0) {
+        const int own = push(make(normal ? NodeOp::normal : NodeOp::tangent, {}));
+        types_[own] = NodeType::vector3;
+        return {{}, own};
+    }
+    NodeValue texel{{}, image_node(input.texture, false)};
+    if (input.flip_y) {
+        NodeDesc flip = make(NodeOp::remap, {});
+        give(flip, 0, texel);
+        give(flip, 3, {{0, 1, 0}});
+        give(flip, 4, {{1, 0, 1}});
+        texel = {{}, push(std::move(flip))};
+    }
+    NodeDesc map = make(NodeOp::normalmap, {});
+    give(map, 0, texel);
+    give(map, 1, {{input.scale, input.scale, input.scale}});
+    const int index = push(std::move(map));
+    types_[index] = NodeType::vector3;
+    return {{}, index};
+}
+
+std::optional<NodeValue> NodeReader::read_normal(const Value& value, const std::string& key,
+                                                 const ReadContext& at) {
+    if (!value.table()) {
+        report_misfit(value, key, "a normal map or a node", at);
+        return std::nullopt;
+    }
+    if (is_graph(value)) {
+        const auto node = read(value, NodeType::vector3, key, at);
+        if (node && node->node < 0) {
+            at.problems.error(value.loc, at.subject + ": " + key + " takes nodes, no constants");
+            return std::nullopt;
+        }
+        return node;
+    }
+    TextureEntry entry;
+    read_keys(value, normal_texture_keys(), entry, {at.problems, at.subject + ": " + key});
+    const int texture = add_texture(value, entry, at, reader_);
+    if (texture < 0) return std::nullopt;
+    return node_of(
+        NormalInput{texture, entry.scale_normal, entry.convention == NormalConvention::directx},
+        true);
+}
+
 NodeValue NodeReader::node_of(const FloatInput& input) {
     const Float3 value{input.value, input.value, input.value};
     if (input.node >= 0) return {{}, input.node, input.output};

@@ -29,6 +29,7 @@ TEST_CASE("mtlx surface: every input of open_pbr_surface arrives as a scene file
     std::string inputs, keys;
     visit_openpbr([&]<class Input>(Input MaterialDesc::*, const OpenPbrInput& info) {
         const std::string name = info.name;
+        if (name == "bump") return;  // no input of MaterialX's
         if constexpr (std::is_same_v<Input, FloatInput>) {
             const std::string x = name.ends_with("_ior")     ? "1.25"
                                   : name.ends_with("number") ? "40"
@@ -46,6 +47,7 @@ TEST_CASE("mtlx surface: every input of open_pbr_surface arrives as a scene file
         mtlx_surface(inputs), "[material.toml]\ngeometry_thin_walled = true\n" + keys);
     const MaterialDesc &m = material(scene, "m"), &t = material(scene, "toml");
     visit_openpbr([&](auto member, const OpenPbrInput& info) {
+        if (std::string_view(info.name) == "bump") return;
         CAPTURE(info.name);
         CHECK(m.*member == t.*member);
         CHECK_FALSE(m.*member == MaterialDesc{}.*member);
@@ -130,8 +132,8 @@ TEST_CASE("mtlx surface: images go where a scene file would put them") {
     CHECK(texture(m.specular_roughness.texture).wrap_u == Wrap::clamp);
     CHECK(texture(m.specular_roughness.texture).wrap_v == Wrap::mirror);
     CHECK(m.geometry_opacity.channel == Channel::a);
-    CHECK(texture(m.geometry_normal).color_space == "raw");
-    CHECK(m.geometry_normal_scale == 0.5f);
+    CHECK(texture(m.geometry_normal.texture).color_space == "raw");
+    CHECK(m.geometry_normal.scale == 0.5f);
 }
 
 TEST_CASE("mtlx surface: a file that is missing gives its default, or a warning later") {
@@ -156,8 +158,7 @@ TEST_CASE("mtlx surface: a file that is missing gives its default, or a warning 
               .find("outside") != std::string::npos);
 }
 
-TEST_CASE(
-    "mtlx surface: values out of range, of a wrong type or from nodes where none go are refused") {
+TEST_CASE("mtlx surface: values out of range, or of a wrong type are refused") {
     const MtlxFolder folder;
     const auto refusal = [&](const std::string& one, const std::string& beside = "") {
         return folder.refusal(mtlx_surface(one, beside));
@@ -171,11 +172,8 @@ TEST_CASE(
     CHECK(refusal(input("base_colour", "color3", "value='1,1,1'")) ==
           "a.mtlx:4:1: open_pbr_surface 's': has no input 'base_colour' (did you mean "
           "'base_color'?)");
-    CHECK(refusal(input("geometry_opacity", "float", "nodename='n'"),
-                  "<noise2d name='n' type='float'/>") ==
-          "a.mtlx:4:1: open_pbr_surface 's': geometry_opacity takes numbers and images, no nodes");
     CHECK(refusal(input("geometry_normal", "vector3", "value='0,0,1'")) ==
-          "a.mtlx:4:1: open_pbr_surface 's': geometry_normal takes a 'normalmap' of an image");
+          "a.mtlx:4:1: open_pbr_surface 's': geometry_normal takes nodes that give a vector3");
 }
 
 TEST_CASE("standard surface: its defaults are its own") {
@@ -266,14 +264,22 @@ TEST_CASE("standard surface: the edge tint of gold by n and k is the F82 of n an
           doctest::Approx(0.5 * (rs + rp) / schlick).epsilon(1e-4));  // r and g are floats
 }
 
-TEST_CASE("standard surface: what OpenPBR here lacks is told, not dropped in silence") {
+TEST_CASE("standard surface: rotation turns the tangent, and what is not there is told") {
     const MtlxFolder folder;
     const SceneDesc scene = folder.load_mtlx(
         mtlx_surface(input("specular_anisotropy", "float", "value='0.5'") +
                          input("specular_rotation", "float", "value='0.25'") +
                          input("transmission_extra_roughness", "float", "value='0.1'"),
                      "", "standard_surface"));
-    CHECK(contains(scene.warnings, "specular_rotation is not supported yet"));
+    const MaterialDesc& m = material(scene, "m");
+    ShadeInput at;
+    at.n = {0, 0, 1};
+    at.dpdu = {1, 0, 0};
+    at.dpdv = {0, 1, 0};
+    NodeValue turned{{}, m.geometry_tangent.node};
+    REQUIRE(turned.node >= 0);
+    // A quarter of a turn of the tangent about the normal.
+    CHECK(std::fabs(value_at(m, turned, at).y) == doctest::Approx(1));
     CHECK(contains(scene.warnings, "transmission_extra_roughness is not supported yet"));
     const SceneDesc half =
         folder.load_mtlx(mtlx_surface(input("specular_anisotropy", "float", "value='0.5'") +
