@@ -16,7 +16,7 @@ Color color_of(Float3 c) { return {c[0], c[1], c[2]}; }
 Color read(const ColorInput& input, const ShadeInput& in, const TextureStore* store) {
     Color c = color_of(input.value);
     if (input.texture >= 0) {
-        const Texel t = store->sample(input.texture, in.uv.x, in.uv.y, in.uv_width);
+        const Texel t = store->sample(input.texture, in.uv.x, in.uv.y, in.uv_width, in.seed);
         c *= Color{t[0], t[1], t[2]};
     }
     return c;
@@ -48,7 +48,7 @@ Channel opacity_channel(const FloatInput& input, const TextureStore* store) {
 
 float read(const FloatInput& input, const ShadeInput& in, const TextureStore* store) {
     if (input.texture < 0) return input.value;
-    const Texel t = store->sample(input.texture, in.uv.x, in.uv.y, in.uv_width);
+    const Texel t = store->sample(input.texture, in.uv.x, in.uv.y, in.uv_width, in.seed);
     const float v = channel_of(t, input.channel);
     return input.value * (input.invert ? 1.0f - v : v);
 }
@@ -283,7 +283,7 @@ Color ShaderProgram::emission(const ShadeInput& in, const TextureStore* store) c
 Color ShaderProgram::visible_emission(const ShadeInput& in,
                                       const TextureStore* store) const noexcept {
     const Color c = emission(in, store);
-    return facts_.cutout ? c * opacity(in.uv, store) : c;
+    return facts_.cutout ? c * opacity(in.uv, store, in.seed) : c;
 }
 
 Color ShaderProgram::mean_emission(const TextureStore* store) const noexcept {
@@ -298,11 +298,12 @@ Color ShaderProgram::mean_emission(const TextureStore* store) const noexcept {
     return max(c, Color(0.0f));
 }
 
-float ShaderProgram::opacity(Vec2f uv, const TextureStore* store) const noexcept {
+float ShaderProgram::opacity(Vec2f uv, const TextureStore* store,
+                             std::uint32_t seed) const noexcept {
     const FloatInput& o = m_.geometry_opacity;
     if (o.texture < 0) return o.value;
     const float v =
-        channel_of(store->sample(o.texture, uv.x, uv.y, 0.0f), opacity_channel(o, store));
+        channel_of(store->sample(o.texture, uv.x, uv.y, 0.0f, seed), opacity_channel(o, store));
     return clamp01(o.value * (o.invert ? 1.0f - v : v));
 }
 
@@ -316,7 +317,7 @@ Vec3f ShaderProgram::coat_normal(const ShadeInput& in, const TextureStore* store
 
 Vec3f ShaderProgram::mapped_normal(int texture, float scale, const ShadeInput& in,
                                    const TextureStore* store) const noexcept {
-    const Texel t = store->sample(texture, in.uv.x, in.uv.y, in.uv_width);
+    const Texel t = store->sample(texture, in.uv.x, in.uv.y, in.uv_width, in.seed);
     const Vec3f n{(2.0f * t[0] - 1.0f) * scale, (2.0f * t[1] - 1.0f) * scale,
                   std::max(2.0f * t[2] - 1.0f, 1e-3f)};
     return normalize(n);

@@ -60,7 +60,7 @@ public:
     /// Mean emission over the texture, for choosing lights.
     Color mean_emission(const TextureStore* store) const noexcept;
     /// 1: light stops here.
-    float opacity(Vec2f uv, const TextureStore* store) const noexcept;
+    float opacity(Vec2f uv, const TextureStore* store, std::uint32_t seed) const noexcept;
     /// The constant that the opacity's texture is multiplied by.
     float opacity_factor() const noexcept { return m_.geometry_opacity.value; }
     bool has_normal_map() const noexcept { return m_.geometry_normal >= 0; }

@@ -25,8 +25,9 @@ bool opacity_stops(const void* opaque_scene, const Hit& hit, std::uint32_t seed)
     }
     const ShaderProgram& program = scene.program(material);
     if (!program.facts().cutout) return true;
-    const float opacity = placed.kind == PlacedKind::mesh ? program.opacity(uv, scene.textures())
-                                                          : program.opacity_factor();
+    const float opacity = placed.kind == PlacedKind::mesh
+                              ? program.opacity(uv, scene.textures(), seed)
+                              : program.opacity_factor();
     if (opacity >= 1.0f) return true;
     if (opacity <= 0.0f) return false;
     const std::uint32_t h = hash_combine(
