@@ -176,7 +176,8 @@ bool TextureStore::Impl::by_tx(TextureSource& s, const std::string& folder,
             if (s.fatal || !s.damages.empty() || s.bytes == 0) return false;
             write_tx(s.pyramid, path);
         }
-        s.tile = cache->add(path, s.channels, s.srgb);
+        // Bytes stay codes; all else was made linear.
+        s.tile = cache->add(path, s.channels, s.srgb && s.type == TexelType::byte);
         s.pyramid = {};
         ++(there ? reused : made);
         return true;
@@ -350,7 +351,8 @@ bool TextureStore::channel_is_one(int texture, int c) const noexcept {
     const bool graded = c < 3 && (use.gain != 1 || use.bias != 0);
     bool one = true, any_alpha = false;
     impl_->each_source(use, [&](const TextureSource& s) {
-        one = one && s.tile < 0 && s.pyramid.is_one[static_cast<std::size_t>(c)];
+        one = one && (s.tile < 0 ? s.pyramid.is_one[static_cast<std::size_t>(c)]
+                                 : impl_->cache->channel_is_one(s.tile, c));
         any_alpha = any_alpha || s.alpha;
     });
     // Where a tile is missing stands magenta, whose green is 0.

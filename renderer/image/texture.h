@@ -69,7 +69,7 @@ public:
 
     int size() const noexcept;
     /// Mean over the image, RGBA, with gain and bias (for light importance and folding). An
-    /// estimate from coarse levels for images in the tile cache.
+    /// estimate from coarse levels for images in the tile cache that are no .tx of ours.
     Texel mean(int texture) const noexcept;
     /// True if every texel of channel c (0..3) equals 1: an alpha that cuts nothing out. False if
     /// not known (channels of the tile cache).

@@ -55,10 +55,10 @@ void read_header(TextureSource& s, const ColorSpaces& colors) {
     s.alpha = s.channels == 2 || s.channels == 4;
     s.srgb = colors.is_plain_srgb(s.color_space);
     s.tiled = info.tiled;
-    const TexelType type = texel_type(reader, s.color_space, colors);
-    s.bytes = pyramid_bytes(s.width, s.height, s.channels, type);
+    s.type = texel_type(reader, s.color_space, colors);
+    s.bytes = pyramid_bytes(s.width, s.height, s.channels, s.type);
     s.finest_bytes =
-        std::int64_t(s.width) * s.height * s.channels * (type == TexelType::byte ? 1 : 2);
+        std::int64_t(s.width) * s.height * s.channels * (s.type == TexelType::byte ? 1 : 2);
     const bool first_channels = info.channels != 2 || reader.alpha_channel() == 1;
     s.cacheable = first_channels && s.channels == pick.count && (probe == kProbe || s.srgb) &&
                   extension_agrees(s.file, reader.format());
@@ -140,7 +140,8 @@ std::int64_t place_sources(std::vector<TextureSource>& sources, std::int64_t mem
             (s.finest_bytes <= TextureStore::kInCoreBytes && used + s.bytes <= memory_bytes / 2);
         if (s.in_core) used += s.bytes;
     }
-    return std::max<std::int64_t>(1, memory_bytes - used);
+    constexpr std::int64_t kInFlight = std::int64_t(1) << 20;  // tiles above the cache's own limit
+    return std::max<std::int64_t>(1, memory_bytes - used - kInFlight);
 }
 
 }  // namespace tessera

@@ -21,10 +21,11 @@ struct TextureSource {
     int channels = 3;  // that are kept
     bool alpha = false;
     bool srgb = false;
-    std::int64_t bytes = 0;         // as a pyramid
-    std::int64_t finest_bytes = 0;  // its finest level
-    bool tiled = false;             // and mip-mapped
-    bool cacheable = false;         // as it is: see survey()
+    TexelType type = TexelType::byte;  // as a pyramid
+    std::int64_t bytes = 0;            // as a pyramid
+    std::int64_t finest_bytes = 0;     // its finest level
+    bool tiled = false;                // and mip-mapped
+    bool cacheable = false;            // as it is: see survey()
 
     Pyramid pyramid;
     bool in_core = true;

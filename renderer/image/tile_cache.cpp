@@ -5,12 +5,14 @@
 
 #include <atomic>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "renderer/api/error.h"
 #include "renderer/image/colour_space.h"
 #include "renderer/image/image_format.h"
 #include "renderer/image/texel_filter.h"
+#include "renderer/image/tx_file.h"
 
 namespace tessera {
 namespace {
@@ -27,6 +29,7 @@ struct Entry {
     int channels = 3;
     bool srgb = false;
     std::vector<LevelShape> levels;
+    std::optional<TexelSummary> summary;
 };
 
 /// The texels of one look-up: holds on to the tile it read last.
@@ -155,12 +158,14 @@ TileCache::~TileCache() = default;
 
 int TileCache::add(const std::string& path, int channels, bool srgb) {
     OIIO::ImageCache& cache = *impl_->cache;
-    Entry entry{cache.get_image_handle(OIIO::ustring(path)), channels, srgb, {}};
+    Entry entry{cache.get_image_handle(OIIO::ustring(path)), channels, srgb, {}, {}};
     if (!entry.handle || !cache.good(entry.handle))
         fail_image(path, "the tile cache refused it: " + cache.geterror());
     OIIO::ImageSpec spec;
     while (cache.get_imagespec(entry.handle, nullptr, spec, 0,
                                static_cast<int>(entry.levels.size()), false)) {
+        if (entry.levels.empty())
+            entry.summary = parse_texels(spec.get_string_attribute("ImageDescription"));
         entry.levels.push_back(
             {spec.width, spec.height, spec.x, spec.y, spec.tile_width, spec.tile_height});
         if (spec.width <= 0 || spec.height <= 0 || spec.tile_width <= 0 || spec.tile_height <= 0)
@@ -190,6 +195,7 @@ Texel TileCache::mean(int handle) const noexcept {
     constexpr int kGrid = 16;
     constexpr float kStep = 1.0f / kGrid;
     const Entry& entry = impl_->entries[static_cast<std::size_t>(handle)];
+    if (entry.summary) return entry.summary->mean;
     const int size = std::max(entry.levels[0].width, entry.levels[0].height);
     const float level = std::log2(std::max(1.0f, static_cast<float>(size) * kStep));
     Texel sum{0, 0, 0, 0};
@@ -201,6 +207,11 @@ Texel TileCache::mean(int handle) const noexcept {
             for (std::size_t c = 0; c < 4; ++c) sum[c] += t[c] * kStep * kStep;
         }
     return sum;
+}
+
+bool TileCache::channel_is_one(int handle, int c) const noexcept {
+    const Entry& entry = impl_->entries[static_cast<std::size_t>(handle)];
+    return entry.summary && entry.summary->is_one[static_cast<std::size_t>(c)];
 }
 
 std::int64_t TileCache::memory_bytes() const noexcept {

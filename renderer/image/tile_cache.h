@@ -29,8 +29,10 @@ public:
     /// that are not finite read as 0. A tile that cannot be read gives magenta and is counted.
     Texel sample(int handle, TextureFilter filter, float u, float v, float level, Wrap wrap_u,
                  Wrap wrap_v, std::uint32_t seed) const noexcept;
-    /// Estimate from a 16 x 16 grid of coarse look-ups.
+    /// Of a .tx as its pyramid had it; else an estimate from a 16 x 16 grid of coarse look-ups.
     Texel mean(int handle) const noexcept;
+    /// False if not known.
+    bool channel_is_one(int handle, int c) const noexcept;
 
     std::int64_t memory_bytes() const noexcept;
     /// Read from files so far, decoded.

@@ -4,6 +4,8 @@
 #include <unistd.h>
 #include <xxhash.h>
 
+#include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
@@ -40,8 +42,9 @@ OIIO::ImageSpec spec_of(const Pyramid& p, const Pyramid::Level& level) {
     spec.attribute("textureformat", "Plain Texture");  // by it levels are told from pages
     spec.attribute("compression", "zip");
     spec.attribute("planarconfig", "contig");
-    spec.attribute("tiff:half", 1);
+    if (p.type == TexelType::half) spec.attribute("tiff:half", 1);
     spec.attribute("Software", "tessera");
+    spec.attribute("ImageDescription", describe_texels({p.mean, p.is_one}));
     return spec;
 }
 
@@ -95,6 +98,24 @@ std::uint64_t meaning_of(const std::string& space, const ColorSpaces& colors) {
 }
 
 }  // namespace
+
+std::string describe_texels(const TexelSummary& s) {
+    return fmt::format("tessera texels {:a} {:a} {:a} {:a} {:d}{:d}{:d}{:d}", s.mean[0], s.mean[1],
+                       s.mean[2], s.mean[3], s.is_one[0], s.is_one[1], s.is_one[2], s.is_one[3]);
+}
+
+std::optional<TexelSummary> parse_texels(const std::string& text) {
+    TexelSummary s;
+    char ones[5] = {};
+    if (std::sscanf(text.c_str(), "tessera texels %f %f %f %f %4[01]", &s.mean[0], &s.mean[1],
+                    &s.mean[2], &s.mean[3], ones) != 5)
+        return std::nullopt;
+    for (std::size_t c = 0; c < 4; ++c) {
+        if (!std::isfinite(s.mean[c])) return std::nullopt;
+        s.is_one[c] = ones[c] == '1';
+    }
+    return s;
+}
 
 std::string default_tx_folder() {
     const char* const cache = std::getenv("XDG_CACHE_HOME");
