@@ -81,7 +81,7 @@ inline LevelPair split_level(float level, int levels) noexcept {
 }
 
 /// Weights of four texels by the uniform cubic B-spline, at f of the way from the second to the
-/// third: positive, of sum 1, true to straight lines. Sigg and Hadwiger 2005, eq. 1.
+/// third: positive, of sum 1, true to straight lines. Sigg and Hadwiger 2005.
 inline void bspline_weights(float f, float (&w)[4]) noexcept {
     const float g = 1 - f, f2 = f * f, g2 = g * g;
     w[0] = g2 * g * (1.0f / 6);
@@ -175,9 +175,9 @@ private:
         }
     }
 
-    /// Pharr, Wronski, Salvi and Fajardo 2024, section 4: a texel drawn with the filter's weights
-    /// has the filter's value as its mean. What is outside of a black border is drawn too, as
-    /// nothing.
+    /// Fajardo et al. 2023: a texel drawn with the filter's weights has the filter's value as its
+    /// mean. What lies outside of a black border is drawn too, as nothing. Textures of one place
+    /// are drawn alike, so that maps of one size stay together: Pharr et al. 2024.
     void one_texel(const LevelPair& l, float u, float v, std::uint32_t seed, Texel& sum) noexcept {
         std::uint32_t h = hash_combine(hash_combine(seed, std::bit_cast<std::uint32_t>(u)),
                                        std::bit_cast<std::uint32_t>(v));

@@ -140,8 +140,9 @@ std::int64_t place_sources(std::vector<TextureSource>& sources, std::int64_t mem
             (s.finest_bytes <= TextureStore::kInCoreBytes && used + s.bytes <= memory_bytes / 2);
         if (s.in_core) used += s.bytes;
     }
-    constexpr std::int64_t kInFlight = std::int64_t(1) << 20;  // tiles above the cache's own limit
-    return std::max<std::int64_t>(1, memory_bytes - used - kInFlight);
+    // The cache's own limit is on texels: its tables, open files and the heap's gaps come on top.
+    const std::int64_t rest = std::max<std::int64_t>(0, memory_bytes - used);
+    return std::max<std::int64_t>(1, rest - rest / 8);
 }
 
 }  // namespace tessera
