@@ -149,7 +149,7 @@ NodeResult GraphRun::result(const Wire& wire) noexcept {
 
 NodeResult GraphRun::run(const Graph::Op& op) noexcept {
     const auto texel = [&](float u, float v, float width) {
-        return store_->sample(op.texture, u, v, width);
+        return store_->sample(op.texture, u, v, width, in_.seed);
     };
     switch (op.op) {
         case NodeOp::texcoord:

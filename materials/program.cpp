@@ -18,7 +18,7 @@ Color color_of(Float3 c) { return {c[0], c[1], c[2]}; }
 Color read(const ColorInput& input, const ShadeInput& in, const TextureStore* store) {
     Color c = color_of(input.value);
     if (input.texture >= 0) {
-        const Texel t = store->sample(input.texture, in.uv.x, in.uv.y, in.uv_width);
+        const Texel t = store->sample(input.texture, in.uv.x, in.uv.y, in.uv_width, in.seed);
         c *= Color{t[0], t[1], t[2]};
     }
     return c;
@@ -50,7 +50,7 @@ Channel opacity_channel(const FloatInput& input, const TextureStore* store) {
 
 float read(const FloatInput& input, const ShadeInput& in, const TextureStore* store) {
     if (input.texture < 0) return input.value;
-    const Texel t = store->sample(input.texture, in.uv.x, in.uv.y, in.uv_width);
+    const Texel t = store->sample(input.texture, in.uv.x, in.uv.y, in.uv_width, in.seed);
     const float v = channel_of(t, input.channel);
     return input.value * (input.invert ? 1.0f - v : v);
 }
@@ -375,7 +375,8 @@ float ShaderProgram::opacity(const ShadeInput& in, const TextureStore* store) co
     if (o.node >= 0) return kept(GraphRun(opacity_graph_, in, store).value(opacity_).x, 0.0f, 1.0f);
     if (o.texture < 0) return o.value;
     const float v =
-        channel_of(store->sample(o.texture, in.uv.x, in.uv.y, 0.0f), opacity_channel(o, store));
+        channel_of(store->sample(o.texture, in.uv.x, in.uv.y, 0.0f, in.seed),
+                   opacity_channel(o, store));
     return clamp01(o.value * (o.invert ? 1.0f - v : v));
 }
 
@@ -408,7 +409,7 @@ Vec3f ShaderProgram::mapped_normal(const NormalInput& input, const Wire& wire, c
         return l2 > 0.0f && std::isfinite(l2) ? n * (1.0f / std::sqrt(l2)) : in.n;
     }
     if (input.texture < 0) return in.n;
-    const Texel t = store->sample(input.texture, in.uv.x, in.uv.y, in.uv_width);
+    const Texel t = store->sample(input.texture, in.uv.x, in.uv.y, in.uv_width, in.seed);
     const Vec3f local = unpacked_normal({t[0], t[1], t[2]}, input.scale);
     return normal_from_tangent_space(in, {local.x, input.flip_y ? -local.y : local.y, local.z});
 }

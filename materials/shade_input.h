@@ -13,6 +13,7 @@ struct ShadeInput {
     Vec2f uv;
     float uv_width = 0;  // footprint in uv units
     Color vertex_color{1.0f};
+    std::uint32_t seed = 0;  // for filters that draw a texel
     // For programs whose facts say `geometry`:
     Vec3f p_object, p_world;  // in the object's own coordinates, and in the world's
     Vec3f n;                  // shading normal, world

@@ -144,7 +144,7 @@ inline constexpr std::array kNodes{
     NodeInfo{NodeOp::geomcolor, "geomcolor", NodeType::color, "Vertex colour."},
     NodeInfo{NodeOp::facingratio, "facingratio", NodeType::scalar, "1 where the surface faces the viewer, 0 at the silhouette."},
     NodeInfo{NodeOp::random, "random", NodeType::scalar, "A number in [0, 1), another for each instance and seed.", {{{"seed", NodeType::scalar}}}},
-    NodeInfo{NodeOp::image, "image", NodeType::color, "An image: file, wrap, color_space as for inputs; at texcoord x uvtiling + uvoffset.",
+    NodeInfo{NodeOp::image, "image", NodeType::color, "An image: file, wrap, filter, frame_offset, color_space as for inputs; at texcoord x uvtiling + uvoffset.",
              {{{"texcoord", NodeType::vector2}, {"uvtiling", NodeType::vector2, {1, 1, 0}}, {"uvoffset", NodeType::vector2}}}, {{{"alpha"}}}},
     NodeInfo{NodeOp::triplanar, "triplanarprojection", NodeType::color, "An image along the three axes of the object, blended by the normal.",
              {{{"position", NodeType::vector3}, {"scale", NodeType::scalar, {1, 0, 0}}, {"blend", NodeType::scalar, {1, 0, 0}}}}},

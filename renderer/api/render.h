@@ -53,6 +53,9 @@ struct Statistics {
     std::uint64_t memory_peak = 0;  // bytes, resident
     std::uint64_t memory_geometry = 0, memory_bvh = 0, memory_textures = 0, memory_film = 0,
                   memory_lights = 0, memory_creases = 0;
+    std::uint64_t texture_limit = 0;  // bytes
+    std::uint64_t textures_in_core = 0, textures_cached = 0, texture_bytes_read = 0,
+                  texture_failures = 0;  // files; by the tile cache; its look-ups that gave magenta
     std::array<std::uint64_t, kInvalidCauses> invalid{};
     std::string first_invalid;  // "radiance at pixel 312,80 sample 17"
     std::uint64_t half_clamped = 0, half_non_finite = 0;
@@ -73,6 +76,9 @@ struct BuildOptions {
     std::string kernel;  // "" = the smallest that covers the scene; "basic", "surface", "full"
     std::string isa;     // Embree's instruction set, "" = the best of this machine
     Strictness strictness = Strictness::normal;
+    std::int64_t texture_memory = kTextureMemory;  // bytes: images and the tile cache together
+    bool auto_tx = false;  // images that memory has no room for are made into .tx files
+    std::string tx_cache;  // their folder; "": $XDG_CACHE_HOME/tessera/tx
 };
 
 /// Throws Error(scene) for what cannot be rendered, Error(memory) when memory runs out.

@@ -29,12 +29,25 @@ inline constexpr Matrix34 kIdentity34{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
 enum class Wrap : std::uint8_t { repeat, clamp, mirror, black };
 
+/// How texels become a value. closest and bilinear read the finest level, whatever the footprint;
+/// bicubic is a cubic B-spline within levels; stochastic is one texel, drawn by trilinear's
+/// weights.
+enum class TextureFilter : std::uint8_t { trilinear, closest, bilinear, bicubic, stochastic };
+
+/// One image of a <UDIM> set: that of the unit square of uv whose lower corner is (column, row).
+struct TextureTile {
+    int column = 0, row = 0;
+    std::string file;  // resolved path
+};
+
 /// One image read as a texture. Equal entries are shared by index.
 struct TextureDesc {
-    std::string file;         // resolved path
-    std::string color_space;  // OCIO name; "" = by use: sRGB for colours, raw for data
+    std::string file;                // resolved path; of a set of tiles its pattern, for messages
+    std::vector<TextureTile> tiles;  // of a <UDIM> set; wrap does nothing
+    std::string color_space;         // OCIO name; "" = by use: sRGB for colours, raw for data
     Wrap wrap_u = Wrap::repeat;
     Wrap wrap_v = Wrap::repeat;
+    TextureFilter filter = TextureFilter::trilinear;
     Float2 scale{1, 1};  // uv' = uv * scale + offset
     Float2 offset{0, 0};
     float gain = 1;  // value' = value * gain + bias (MTL -mm)
@@ -378,6 +391,7 @@ struct RenderDesc {
     int max_glossy_depth = 8;
     int max_transmission_depth = 12;
     int min_depth = 1;  // no Russian roulette before this many bounces
+    int frame = 1;      // of image sequences
 };
 
 struct SceneDesc {
@@ -399,6 +413,10 @@ struct SceneDesc {
     std::vector<std::string> warnings;  // located, one line each
     std::vector<std::string> notes;     // what was done in the user's place
 };
+
+/// Bytes that textures may take unless BuildOptions say otherwise. A constant, not a share of the
+/// machine's memory: where a texture is read from can show in the picture's last bits.
+inline constexpr std::int64_t kTextureMemory = std::int64_t(4) << 30;
 
 struct LoadOptions {
     Strictness strictness = Strictness::normal;

@@ -95,6 +95,11 @@ void say_what_was_rendered(const Statistics& s) {
     };
     log_info(fmt::format("render   {} spp in {:.2f} s, {}samples/s, {}rays/s ({} threads)", s.spp,
                          s.render_s, per_second(s.samples), per_second(s.rays.total()), s.threads));
+    if (s.textures_cached > 0)
+        log_info(fmt::format(
+            "textures {} files in memory, {} in the tile cache; {} of {} MiB, {} MiB read",
+            s.textures_in_core, s.textures_cached, s.memory_textures >> 20, s.texture_limit >> 20,
+            s.texture_bytes_read >> 20));
 }
 
 void warn_of_lost_values(const Statistics& s) {
@@ -103,6 +108,10 @@ void warn_of_lost_values(const Statistics& s) {
             std::accumulate(s.invalid.begin(), s.invalid.end(), std::uint64_t{0});
         log_warning(fmt::format("{} invalid samples or rays were dropped; first: {}", total,
                                 s.first_invalid));
+    }
+    if (s.texture_failures > 0) {
+        log_warning(fmt::format("{} texture look-ups met tiles that cannot be read; magenta there",
+                                s.texture_failures));
     }
     if (s.half_clamped > 0) {
         log_warning(

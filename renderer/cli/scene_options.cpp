@@ -64,6 +64,8 @@ void SceneOptions::add_to(CLI::App& app) {
     app.add_option("-r,--res", res, "Resolution, WIDTHxHEIGHT");
     app.add_option("--crop", crop, "Crop window X0,Y0,X1,Y1 in pixels of the full frame");
     app.add_option("--seed", seed, "Seed of the sampling");
+    app.add_option("--frame", frame, "Frame of image sequences")
+        ->check(CLI::Range(-1000000, 1000000));
     app.add_option(
         "--aov", aovs,
         "A pass beyond beauty: Z, N, P, albedo (repeatable; default all; 'beauty' alone: none)");
@@ -79,6 +81,13 @@ void SceneOptions::add_to(CLI::App& app) {
         ->check(CLI::IsMember({"basic", "surface", "full"}));
     app.add_option("--isa", isa, "Embree's instruction set (default: the best of this machine)")
         ->check(CLI::IsMember({"sse2", "sse4.2", "avx", "avx2", "avx512"}));
+    app.add_option("--texture-memory", texture_memory,
+                   "MiB that textures may take, the tile cache included (default 4096)")
+        ->check(CLI::Range(32, 1 << 24));
+    app.add_flag("--auto-tx", auto_tx,
+                 "Images that --texture-memory has no room for are made into .tx files, once");
+    app.add_option("--tx-cache", tx_cache,
+                   "Folder of the .tx files (default $XDG_CACHE_HOME/tessera/tx)");
     CLI::Option* const no_warnings = app.add_flag("--strict", strict, "Warnings are errors");
     app.add_flag("--lenient", lenient,
                  "Broken faces, numbers and images are left out with a warning instead of refused")
@@ -103,6 +112,7 @@ SceneDesc SceneOptions::load(double& load_s) const {
     options.strictness = strictness();
     options.allow_external_assets = external;
     options.set = set;
+    if (frame) options.set.push_back("render.frame=" + std::to_string(*frame));
     SceneDesc desc = load_scene(scene, options);
     if (!size.empty()) {
         desc.film.width = size[0];
@@ -117,7 +127,17 @@ SceneDesc SceneOptions::load(double& load_s) const {
     return desc;
 }
 
-BuildOptions SceneOptions::build_options() const { return {threads, kernel, isa, strictness()}; }
+BuildOptions SceneOptions::build_options() const {
+    BuildOptions options;
+    options.threads = threads;
+    options.kernel = kernel;
+    options.isa = isa;
+    options.strictness = strictness();
+    options.texture_memory = std::int64_t{texture_memory} << 20;
+    options.auto_tx = auto_tx;
+    options.tx_cache = tx_cache;
+    return options;
+}
 
 Strictness SceneOptions::strictness() const noexcept {
     if (lenient) return Strictness::lenient;

@@ -18,10 +18,13 @@ struct SceneOptions {
     std::vector<std::string> set;
     std::vector<std::string> aovs;
     std::string res, crop, kernel, isa;
-    std::optional<int> spp;
+    std::optional<int> spp, frame;
     std::optional<std::uint64_t> seed;
     int threads = 0;
     int tile = 32;
+    int texture_memory = static_cast<int>(kTextureMemory >> 20);
+    std::string tx_cache;
+    bool auto_tx = false;
     bool strict = false, lenient = false, external = false;
 
     void add_to(CLI::App& app);

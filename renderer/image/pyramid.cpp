@@ -35,6 +35,18 @@ private:
 
 float clamp_unit(float v) { return std::clamp(v, 0.0f, 1.0f); }
 
+std::vector<Pyramid::Level> pyramid_levels(int width, int height) {
+    std::vector<Pyramid::Level> levels;
+    std::size_t texels = 0;
+    for (;;) {
+        levels.push_back({texels, width, height});
+        texels += levels.back().texels();
+        if (width == 1 && height == 1) return levels;
+        width = std::max(1, width / 2);
+        height = std::max(1, height / 2);
+    }
+}
+
 /// Fills a pyramid: level 0 from rows of a file, the rest from what was stored.
 class Builder {
 public:
@@ -45,14 +57,8 @@ public:
 
     /// Room for a picture of this size and all levels below it.
     void allocate(int width, int height) {
-        std::size_t texels = 0;
-        for (;;) {
-            p_.levels.push_back({texels, width, height});
-            texels += p_.levels.back().texels();
-            if (width == 1 && height == 1) break;
-            width = std::max(1, width / 2);
-            height = std::max(1, height / 2);
-        }
+        p_.levels = pyramid_levels(width, height);
+        const std::size_t texels = p_.levels.back().first + p_.levels.back().texels();
         if (p_.type == TexelType::byte)
             p_.bytes.resize(texels * n_);
         else
@@ -307,15 +313,27 @@ TexelType texel_type(PixelReader& reader, const std::string& color_space,
     return data ? TexelType::unorm16 : TexelType::half;
 }
 
+int stored_channels(PixelReader& reader, const std::string& color_space,
+                    const ColorSpaces& colors) {
+    const int picked = pick_channels(reader.info().channels, reader.alpha_channel()).count;
+    const bool converted = texel_type(reader, color_space, colors) == TexelType::half;
+    return picked < 3 && converted && !grey_stays_grey(color_space, colors) ? picked + 2 : picked;
+}
+
+std::int64_t pyramid_bytes(int width, int height, int channels, TexelType type) {
+    std::int64_t texels = 0;
+    for (const Pyramid::Level& l : pyramid_levels(width, height))
+        texels += static_cast<std::int64_t>(l.texels());
+    return texels * channels * (type == TexelType::byte ? 1 : 2);
+}
+
 Pyramid build_pyramid(PixelReader& reader, const std::string& color_space,
                       const ColorSpaces& colors, const ByteTables& tables) {
     const ImageInfo& info = reader.info();
     const ChannelPick pick = pick_channels(info.channels, reader.alpha_channel());
     Pyramid p;
     p.type = texel_type(reader, color_space, colors);
-    p.channels = pick.count;
-    if (pick.count < 3 && p.type == TexelType::half && !grey_stays_grey(color_space, colors))
-        p.channels += 2;
+    p.channels = stored_channels(reader, color_space, colors);
     const bool srgb = p.type == TexelType::byte && !is_data_name(color_space);
     p.color_table = (srgb ? tables.srgb : tables.linear).data();
     p.alpha_table = tables.linear.data();

@@ -76,9 +76,14 @@ Pyramid build_pyramid(PixelReader& reader, const std::string& color_space,
 /// One texel of a linear 8-bit colour.
 Pyramid constant_pyramid(const std::array<std::uint8_t, 3>& rgb, const ByteTables& tables);
 
-/// The stored type and bytes of level 0, known before anything is read.
+/// The stored type, known before anything is read.
 TexelType texel_type(PixelReader& reader, const std::string& color_space,
                      const ColorSpaces& colors);
+/// What build_pyramid() will keep of each texel: more than the pick where a conversion colours
+/// grey.
+int stored_channels(PixelReader& reader, const std::string& color_space, const ColorSpaces& colors);
+/// Bytes of the texels of a pyramid of this size.
+std::int64_t pyramid_bytes(int width, int height, int channels, TexelType type);
 
 /// A finite coordinate brought near the picture, so that no texel number is too large for an int;
 /// what it reads stays the same.
@@ -87,5 +92,10 @@ float fold(float u, Wrap wrap) noexcept;
 /// Trilinear look-up; u to the right, v upward, level 0 the finest, clamped. u and v are finite.
 Texel sample_pyramid(const Pyramid& pyramid, float u, float v, float level, Wrap wrap_u,
                      Wrap wrap_v) noexcept;
+
+/// The same by any filter; trilinear gives the same bits, more slowly. seed decides what the
+/// stochastic filter draws at (u, v).
+Texel filter_pyramid(const Pyramid& pyramid, TextureFilter filter, float u, float v, float level,
+                     Wrap wrap_u, Wrap wrap_v, std::uint32_t seed) noexcept;
 
 }  // namespace tessera

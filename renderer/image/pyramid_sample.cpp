@@ -4,48 +4,10 @@
 #include <cmath>
 
 #include "renderer/image/pyramid.h"
+#include "renderer/image/texel_filter.h"
 
 namespace tessera {
 namespace {
-
-/// The two texels a coordinate lies between, and their weights.
-struct Taps {
-    int first, second;
-    float f;                   // share of the second
-    float inside[2] = {1, 1};  // 0 where Wrap::black has no texel
-};
-
-int wrap_index(int i, int n, Wrap wrap) noexcept {
-    switch (wrap) {
-        case Wrap::repeat:
-            return i < 0 ? i + n : i - n;
-        case Wrap::mirror:
-            if (i < 0) i = -1 - i;
-            return i < n ? i : std::max(0, 2 * n - 1 - i);
-        case Wrap::clamp:
-        case Wrap::black:
-            return i < 0 ? 0 : n - 1;
-    }
-    return 0;
-}
-
-/// u folded, in texture units; texel centres at (i + 0.5) / n. The wrap is applied to each texel,
-/// so that a repeating picture is interpolated across its seam.
-[[gnu::always_inline]] inline Taps find_taps(float u, int n, Wrap wrap) noexcept {
-    const float x = u * static_cast<float>(n) - 0.5f;
-    const float floor_x = std::floor(x);
-    const int i = static_cast<int>(floor_x);
-    Taps taps{i, i + 1, x - floor_x};
-    if (i >= 0 && i + 1 < n) [[likely]]
-        return taps;
-    for (int k = 0; k < 2; ++k) {
-        int& tap = k == 0 ? taps.first : taps.second;
-        if (tap >= 0 && tap < n) continue;
-        tap = wrap_index(tap, n, wrap);
-        if (wrap == Wrap::black) taps.inside[k] = 0;
-    }
-    return taps;
-}
 
 struct Byte {
     const std::uint8_t* data;
@@ -119,6 +81,34 @@ Texel trilinear(const Pyramid& p, float u, float v, float level, Wrap wrap_u,
     return sum;
 }
 
+/// Single texels, for the filters that are not in the loop of every scene.
+template <class Store, int kChannels>
+class PyramidTexels {
+public:
+    explicit PyramidTexels(const Pyramid& p) noexcept : p_(p), store_(p) {}
+    int levels() const noexcept { return static_cast<int>(p_.levels.size()); }
+    int width(int level) const noexcept { return at(level).width; }
+    int height(int level) const noexcept { return at(level).height; }
+    static bool has_alpha() noexcept { return kChannels == 2 || kChannels == 4; }
+
+    Texel texel(int level, int x, int y) const noexcept {
+        const Pyramid::Level& l = at(level);
+        const std::size_t i = (l.first + l.row(y) + l.column(x)) * kChannels;
+        const auto get = [&](std::size_t k) { return store_.template get<kChannels>(i + k, k); };
+        if constexpr (kChannels == 1) return {get(0), get(0), get(0), 1};
+        if constexpr (kChannels == 2) return {get(0), get(0), get(0), get(1)};
+        if constexpr (kChannels == 3) return {get(0), get(1), get(2), 1};
+        if constexpr (kChannels == 4) return {get(0), get(1), get(2), get(3)};
+    }
+
+private:
+    const Pyramid::Level& at(int level) const noexcept {
+        return p_.levels[static_cast<std::size_t>(level)];
+    }
+    const Pyramid& p_;
+    Store store_;
+};
+
 template <class Store>
 Texel by_channels(const Pyramid& p, float u, float v, float level, Wrap wrap_u,
                   Wrap wrap_v) noexcept {
@@ -131,6 +121,33 @@ Texel by_channels(const Pyramid& p, float u, float v, float level, Wrap wrap_u,
             return trilinear<Store, 3>(p, u, v, level, wrap_u, wrap_v);
         default:
             return trilinear<Store, 4>(p, u, v, level, wrap_u, wrap_v);
+    }
+}
+
+struct FilteredRead {
+    TextureFilter filter;
+    float u, v, level;
+    Wrap wrap_u, wrap_v;
+    std::uint32_t seed;
+};
+
+template <class Store, int kChannels>
+Texel filtered(const Pyramid& p, const FilteredRead& r) noexcept {
+    PyramidTexels<Store, kChannels> texels(p);
+    return TexelFilter(texels, r.wrap_u, r.wrap_v)(r.filter, r.u, r.v, r.level, r.seed);
+}
+
+template <class Store>
+Texel filtered_by_channels(const Pyramid& p, const FilteredRead& r) noexcept {
+    switch (p.channels) {
+        case 1:
+            return filtered<Store, 1>(p, r);
+        case 2:
+            return filtered<Store, 2>(p, r);
+        case 3:
+            return filtered<Store, 3>(p, r);
+        default:
+            return filtered<Store, 4>(p, r);
     }
 }
 
@@ -153,6 +170,20 @@ Texel sample_pyramid(const Pyramid& pyramid, float u, float v, float level, Wrap
             return by_channels<Unorm16>(pyramid, u, v, level, wrap_u, wrap_v);
         case TexelType::half:
             return by_channels<Half>(pyramid, u, v, level, wrap_u, wrap_v);
+    }
+    return {0, 0, 0, 1};
+}
+
+Texel filter_pyramid(const Pyramid& pyramid, TextureFilter filter, float u, float v, float level,
+                     Wrap wrap_u, Wrap wrap_v, std::uint32_t seed) noexcept {
+    const FilteredRead r{filter, fold(u, wrap_u), fold(v, wrap_v), level, wrap_u, wrap_v, seed};
+    switch (pyramid.type) {
+        case TexelType::byte:
+            return filtered_by_channels<Byte>(pyramid, r);
+        case TexelType::unorm16:
+            return filtered_by_channels<Unorm16>(pyramid, r);
+        case TexelType::half:
+            return filtered_by_channels<Half>(pyramid, r);
     }
     return {0, 0, 0, 1};
 }

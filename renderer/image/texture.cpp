@@ -2,52 +2,50 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cctype>
 #include <cmath>
 #include <exception>
 #include <filesystem>
 #include <limits>
 #include <map>
-#include <new>
+#include <set>
 #include <utility>
 
 #include "renderer/core/parallel.h"
 #include "renderer/image/colour_names.h"
-#include "renderer/image/colour_space.h"
-#include "renderer/image/image_format.h"
-#include "renderer/image/pixel_reader.h"
 #include "renderer/image/pyramid.h"
+#include "renderer/image/texture_source.h"
 #include "renderer/image/tile_cache.h"
+#include "renderer/image/tx_file.h"
 
 namespace tessera {
 namespace {
 
-/// The library picks its reader by extension, so only a name that tells the truth may go there.
-bool extension_agrees(const std::string& path, ImageFormat format) {
-    std::string e = std::filesystem::path(path).extension().string();
-    std::transform(e.begin(), e.end(), e.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    switch (format) {
-        case ImageFormat::png:
-            return e == ".png";
-        case ImageFormat::jpeg:
-            return e == ".jpg" || e == ".jpeg";
-        case ImageFormat::tiff:
-            return e == ".tif" || e == ".tiff" || e == ".tx";
-        case ImageFormat::exr:
-            return e == ".exr";
-        case ImageFormat::hdr:
-            return e == ".hdr";
-    }
-    return false;
-}
+constexpr Texel kMagenta{1, 0, 1, 1};
 
-/// The placement and arithmetic of one TextureDesc; what it reads lies in a Source.
+/// The placement and arithmetic of one TextureDesc; what it reads lies in a TextureSource.
 struct Use {
-    std::size_t source = 0;
+    std::size_t source = 0;  // the first one's of a set of tiles
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+    TextureFilter filter = TextureFilter::trilinear;
+    int set = -1;  // of tiles
     Float2 scale{1, 1}, offset{0, 0};
     float gain = 1, bias = 0;
+};
+
+/// A grid of tiles.
+struct TileSet {
+    int columns = 0, rows = 0;
+    std::vector<int> source;  // row by row; -1: no tile
+    std::string pattern;
+    SourceLoc loc;
+
+    int at(float column, float row) const noexcept {
+        if (!(column >= 0 && row >= 0 && column < static_cast<float>(columns) &&
+              row < static_cast<float>(rows)))
+            return -1;
+        return source[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+                      static_cast<std::size_t>(column)];
+    }
 };
 
 float finite_or(float value, float otherwise) { return std::isfinite(value) ? value : otherwise; }
@@ -59,208 +57,274 @@ void grade(Texel& t, const Use& use) noexcept {
     for (std::size_t c = 0; c < 3; ++c) t[c] = std::clamp(t[c] * use.gain + use.bias, -kMax, kMax);
 }
 
-constexpr const char* kMagentaInstead = "; magenta in its place";
+std::string mib(std::int64_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }
 
-/// A file in one colour space, read once however many textures use it.
-struct Source {
-    std::string file;
-    std::string color_space;
-    SourceLoc loc;
-    Pyramid pyramid;
-    int tile = -1;  // in the tile cache instead
-    bool alpha = false;
-    int width = 1, height = 1;
-    bool to_cache = false;
-    bool srgb = false;
-    int channels = 3;
-    std::vector<std::string> damages, warnings, notes;
-    std::string error;  // the colour space is unknown: the user's mistake, not the file's
-    std::exception_ptr fatal;
-};
-
-std::string named(const Source& s) { return "texture '" + s.file + "': "; }
-
-/// Whether the picture is one for the tile cache. That applies the sRGB curve or nothing: pictures
-/// in other spaces are converted in memory, whatever it costs.
-bool wants_cache(Source& s, const PixelReader& reader, bool needs_conversion, std::int64_t bytes) {
-    if (bytes <= TextureStore::kInCoreBytes) return false;
-    const ImageInfo& info = reader.info();
-    const std::string size = named(s) + std::to_string(bytes >> 20) + " MiB";
-    const bool first_channels = info.channels != 2 || reader.alpha_channel() == 1;
-    if (!first_channels || (needs_conversion && !s.srgb) ||
-        !extension_agrees(s.file, reader.format())) {
-        s.notes.push_back(size +
-                          " kept in memory: the tile cache takes only pictures in sRGB, raw or the "
-                          "working space whose extension is that of their format");
-        return false;
-    }
-    if (s.srgb)
-        s.notes.push_back(size +
-                          ", filtered in sRGB codes, which is too dark at a distance (run 'maketx "
-                          "--colorconvert sRGB linear -d half')");
-    else if (!info.tiled)
-        s.notes.push_back(size + ", not tiled or mip-mapped: slow to read (run 'maketx')");
-    return true;
-}
-
-void load(Source& s, const ColorSpaces& colors, const ByteTables& tables) {
-    PixelReader reader(s.file, ImageLimits());
-    const ImageInfo& info = reader.info();
-    if (s.color_space.empty()) s.color_space = info.is_float ? kLinRec709 : kSrgbTexture;
-    // The conversion of one pixel tells an unknown space from a bad file, and whether anything
-    // changes.
-    constexpr std::array<float, 3> kProbe{0.2f, 0.5f, 0.7f};
-    std::array<float, 3> probe = kProbe;
-    try {
-        colors.to_working(probe, s.color_space);
-    } catch (const Error& error) {
-        s.error = error.what();
-        throw;
-    }
-    const ChannelPick pick = pick_channels(info.channels, reader.alpha_channel());
-    const TexelType type = texel_type(reader, s.color_space, colors);
-    s.channels = pick.count;
-    s.alpha = pick.count == 2 || pick.count == 4;
-    s.srgb = colors.is_plain_srgb(s.color_space);
-    s.width = info.width;
-    s.height = info.height;
-    const std::int64_t bytes =
-        std::int64_t(info.width) * info.height * pick.count * (type == TexelType::byte ? 1 : 2);
-    s.to_cache = wants_cache(s, reader, probe != kProbe, bytes);
-    if (s.to_cache) return;
-    s.pyramid = build_pyramid(reader, s.color_space, colors, tables);
-    if (s.pyramid.non_finite > 0)
-        s.warnings.push_back(named(s) + std::to_string(s.pyramid.non_finite) +
-                             " values are not finite; read as 0");
-    if (s.pyramid.clamped > 0)
-        s.warnings.push_back(named(s) + std::to_string(s.pyramid.clamped) +
-                             " values are beyond 65504; clamped to that");
-}
-
-void become_magenta(Source& s, const ByteTables& tables, const Error& why) {
-    if (claims_to_be_image(s.file))
-        s.damages.emplace_back(why.what());
-    else
-        s.warnings.push_back(std::string(why.what()) + kMagentaInstead);
-    s.pyramid = constant_pyramid({255, 0, 255}, tables);
-    s.to_cache = s.alpha = false;
-    s.width = s.height = 1;
-}
-
-/// load() with every failure of the file told and turned into magenta.
-void load_or_magenta(Source& s, const ColorSpaces& colors, const ByteTables& tables) noexcept {
-    try {
-        try {
-            load(s, colors, tables);
-        } catch (const Error& error) {
-            if (error.code() == ExitCode::memory) throw;
-            if (s.error.empty()) become_magenta(s, tables, error);
-        } catch (const std::bad_alloc&) {
-            throw Error(ExitCode::memory, named(s) + "out of memory");
-        }
-    } catch (...) {
-        s.fatal = std::current_exception();
-    }
-}
+/// Whether the tile cache reads the file well: a piece at a time, with levels that are means of
+/// light.
+bool reads_well(const TextureSource& s) { return s.cacheable && s.tiled && !s.srgb; }
 
 }  // namespace
 
 struct TextureStore::Impl {
     ByteTables tables;
     std::vector<Use> uses;
-    std::vector<Source> sources;
+    std::vector<TextureSource> sources;
+    std::vector<TileSet> sets;
     std::unique_ptr<TileCache> cache;
+    std::map<std::pair<std::string, std::string>, std::size_t> known;
+    int made = 0, reused = 0;  // .tx files
 
     void list(const std::vector<TextureRequest>& requests);
+    std::size_t add_source(const std::string& file, const std::string& space, const SourceLoc& loc);
+    int add_set(const TextureDesc& desc, const std::string& space);
+    template <class Step>
+    void for_each(Workers* workers, const Step& step);
+    void place(const TextureOptions& options, const ColorSpaces& colors, Problems& problems);
+    void to_cache(TextureSource& s, const TextureOptions& options, const ColorSpaces& colors);
+    bool by_tx(TextureSource& s, const std::string& folder, const ColorSpaces& colors);
     void report(Problems& problems);
-    const Source& source(int texture) const noexcept {
+
+    const TextureSource& source(int texture) const noexcept {
         return sources[uses[static_cast<std::size_t>(texture)].source];
     }
+    /// Calls visit(source) for all that a texture reads.
+    template <class Visit>
+    void each_source(const Use& use, const Visit& visit) const {
+        if (use.set < 0) return visit(sources[use.source]);
+        for (const int s : sets[static_cast<std::size_t>(use.set)].source)
+            if (s >= 0) visit(sources[static_cast<std::size_t>(s)]);
+    }
+    Texel filtered(const Use& use, const TextureSource& s, float u, float v, float level,
+                   std::uint32_t seed) const noexcept;
 };
 
+std::size_t TextureStore::Impl::add_source(const std::string& file, const std::string& space,
+                                           const SourceLoc& loc) {
+    const auto [it, added] = known.try_emplace({file, space}, sources.size());
+    if (added) {
+        TextureSource& s = sources.emplace_back();
+        s.file = file;
+        s.color_space = space;
+        s.loc = loc;
+    }
+    return it->second;
+}
+
+int TextureStore::Impl::add_set(const TextureDesc& desc, const std::string& space) {
+    TileSet& set = sets.emplace_back();
+    set.pattern = desc.file;
+    set.loc = desc.loc;
+    for (const TextureTile& t : desc.tiles) {
+        set.columns = std::max(set.columns, t.column + 1);
+        set.rows = std::max(set.rows, t.row + 1);
+    }
+    set.source.assign(static_cast<std::size_t>(set.columns) * static_cast<std::size_t>(set.rows),
+                      -1);
+    for (const TextureTile& t : desc.tiles)
+        set.source[static_cast<std::size_t>(t.row) * static_cast<std::size_t>(set.columns) +
+                   static_cast<std::size_t>(t.column)] =
+            static_cast<int>(add_source(t.file, space, desc.loc));
+    return static_cast<int>(sets.size()) - 1;
+}
+
 void TextureStore::Impl::list(const std::vector<TextureRequest>& requests) {
-    std::map<std::pair<std::string, std::string>, std::size_t> known;
     for (const TextureRequest& request : requests) {
         if (!request.desc) throw Error(ExitCode::bug, "TextureStore: a request without a texture");
         const TextureDesc& d = *request.desc;
         const bool raw = d.color_space.empty() && request.use == TextureUse::data;
         const std::string space = raw ? std::string(kRaw) : own_name(d.color_space);
-        const auto [it, added] = known.try_emplace({d.file, space}, sources.size());
-        if (added) {
-            Source& s = sources.emplace_back();
-            s.file = d.file;
-            s.color_space = space;
-            s.loc = d.loc;
+        Use use{0,
+                d.wrap_u,
+                d.wrap_v,
+                d.filter,
+                -1,
+                {finite_or(d.scale[0], 1), finite_or(d.scale[1], 1)},
+                {finite_or(d.offset[0], 0), finite_or(d.offset[1], 0)},
+                finite_or(d.gain, 1),
+                finite_or(d.bias, 0)};
+        if (d.tiles.empty()) {
+            use.source = add_source(d.file, space, d.loc);
+        } else {
+            use.set = add_set(d, space);
+            use.source = add_source(d.tiles[0].file, space, d.loc);
+            use.wrap_u = use.wrap_v = Wrap::clamp;  // a tile knows nothing of its neighbours
         }
-        uses.push_back({it->second,
-                        d.wrap_u,
-                        d.wrap_v,
-                        {finite_or(d.scale[0], 1), finite_or(d.scale[1], 1)},
-                        {finite_or(d.offset[0], 0), finite_or(d.offset[1], 0)},
-                        finite_or(d.gain, 1),
-                        finite_or(d.bias, 0)});
+        uses.push_back(use);
     }
 }
 
-/// In the order of the requests, after all are loaded. The tile cache is filled here, by one
-/// thread.
-void TextureStore::Impl::report(Problems& problems) {
-    for (Source& s : sources) {
-        if (s.fatal) std::rethrow_exception(s.fatal);
-        if (s.to_cache) {
-            try {
-                if (!cache) cache = std::make_unique<TileCache>();
-                s.tile = cache->add(s.file, s.channels, s.srgb);
-            } catch (const Error& error) {
-                become_magenta(s, tables, error);
-            }
+template <class Step>
+void TextureStore::Impl::for_each(Workers* workers, const Step& step) {
+    const int count = static_cast<int>(sources.size());
+    const auto one = [&](int i) { step(sources[static_cast<std::size_t>(i)]); };
+    if (workers && count > 1)
+        workers->for_each(count, one);
+    else
+        for (int i = 0; i < count; ++i) one(i);
+}
+
+/// True if the cache now reads a .tx in the file's place, made if there was none.
+bool TextureStore::Impl::by_tx(TextureSource& s, const std::string& folder,
+                               const ColorSpaces& colors) {
+    const std::string path = folder.empty() ? "" : tx_path(folder, s.file, s.color_space, colors);
+    try {
+        if (path.empty()) throw Error(ExitCode::output, "no folder for it (--tx-cache names one)");
+        std::error_code error;
+        const bool there = std::filesystem::is_regular_file(path, error);
+        if (!there) {
+            load_pixels(s, colors, tables);
+            if (s.fatal || !s.damages.empty() || s.bytes == 0) return false;
+            write_tx(s.pyramid, path);
         }
+        // Bytes stay codes; all else was made linear.
+        s.tile = cache->add(path, s.channels, s.srgb && s.type == TexelType::byte);
+        s.pyramid = {};
+        ++(there ? reused : made);
+        return true;
+    } catch (const Error& why) {
+        s.pyramid = {};
+        s.warnings.push_back(named(s) + "no .tx: " + why.what());
+        return false;
+    }
+}
+
+void TextureStore::Impl::to_cache(TextureSource& s, const TextureOptions& options,
+                                  const ColorSpaces& colors) {
+    const std::string& folder = options.tx_folder.empty() ? default_tx_folder() : options.tx_folder;
+    if (options.auto_tx && !reads_well(s)) {
+        if (by_tx(s, folder, colors)) return;
+        if (s.fatal || s.in_core) return;  // magenta
+    }
+    if (!s.cacheable) {
+        s.in_core = true;
+        load_pixels(s, colors, tables);
+        return;
+    }
+    try {
+        s.tile = cache->add(s.file, s.channels, s.srgb);
+    } catch (const Error& error) {
+        return become_magenta(s, tables, error);
+    }
+    const std::string size = named(s) + mib(s.bytes);
+    if (s.srgb)
+        s.notes.push_back(
+            size +
+            " in the tile cache, its coarser levels are means of sRGB codes: too dark "
+            "at a distance (use --auto-tx)");
+    else if (!s.tiled)
+        s.notes.push_back(
+            size +
+            " in the tile cache, not tiled or mip-mapped: slow to read (use --auto-tx, "
+            "or run 'maketx')");
+}
+
+/// Which sources go to the tile cache; it is filled by one thread, in the order of the requests.
+void TextureStore::Impl::place(const TextureOptions& options, const ColorSpaces& colors,
+                               Problems& problems) {
+    const std::int64_t rest = place_sources(sources, options.memory_bytes, options.auto_tx);
+    if (rest == 0) return;
+    cache = std::make_unique<TileCache>(rest, tables);
+    for (TextureSource& s : sources)
+        if (!s.in_core && !s.fatal) to_cache(s, options, colors);
+    std::int64_t stuck = 0;
+    for (const TextureSource& s : sources)
+        if (s.in_core) stuck += s.bytes;
+    if (stuck > options.memory_bytes)
+        problems.warn({},
+                      "textures of " + mib(stuck) + " are kept in memory, over the limit of " +
+                          mib(options.memory_bytes) +
+                          ": the tile cache takes only pictures in sRGB, raw or the working space "
+                          "whose extension is that of their format (--auto-tx makes such)");
+    if (made + reused > 0)
+        problems.note({}, "auto-tx: " + std::to_string(made) + " .tx made, " +
+                              std::to_string(reused) + " there from before");
+}
+
+/// In the order of the requests, after all are loaded.
+void TextureStore::Impl::report(Problems& problems) {
+    for (const TextureSource& s : sources) {
+        if (s.fatal) std::rethrow_exception(s.fatal);
         if (!s.error.empty()) problems.error(s.loc, s.error);
         for (const std::string& line : s.damages)
-            problems.damage(s.loc, line + (problems.lenient() ? kMagentaInstead : ""));
+            problems.damage(s.loc, line + (problems.lenient() ? "; magenta in its place" : ""));
         for (const std::string& line : s.warnings) problems.warn(s.loc, line);
         for (const std::string& line : s.notes) problems.note(s.loc, line);
+    }
+    for (const TileSet& set : sets) {
+        const auto holes = std::count(set.source.begin(), set.source.end(), -1);
+        // Rows of a UDIM set end where they like: a hole has a tile after it in its row.
+        std::string first;
+        int inside = 0;
+        for (int row = 0; holes > 0 && row < set.rows; ++row) {
+            bool after = false;
+            for (int column = set.columns - 1; column >= 0; --column) {
+                const bool there = set.at(static_cast<float>(column), static_cast<float>(row)) >= 0;
+                if (!there && after) {
+                    ++inside;
+                    first = "u " + std::to_string(column) + ", v " + std::to_string(row);
+                }
+                after = after || there;
+            }
+        }
+        if (inside > 0)
+            problems.warn(set.loc, "texture '" + set.pattern + "': " + std::to_string(inside) +
+                                       " tiles are missing between others (one at " + first +
+                                       "); magenta where they are read");
     }
 }
 
 TextureStore::TextureStore(const std::vector<TextureRequest>& requests, const ColorSpaces& colors,
-                           Problems& problems, Workers* workers)
+                           Problems& problems, Workers* workers, const TextureOptions& options)
     : impl_(std::make_unique<Impl>()) {
-    impl_->list(requests);
-    const auto load_one = [&](int i) {
-        load_or_magenta(impl_->sources[static_cast<std::size_t>(i)], colors, impl_->tables);
-    };
-    const int count = static_cast<int>(impl_->sources.size());
-    if (workers && count > 1)
-        workers->for_each(count, load_one);
-    else
-        for (int i = 0; i < count; ++i) load_one(i);
-    impl_->report(problems);
+    Impl& impl = *impl_;
+    impl.list(requests);
+    impl.for_each(workers, [&](TextureSource& s) { survey(s, colors, impl.tables); });
+    impl.place(options, colors, problems);
+    impl.for_each(workers, [&](TextureSource& s) {
+        if (s.in_core && s.pyramid.levels.empty() && !s.fatal && s.error.empty())
+            load_pixels(s, colors, impl.tables);
+    });
+    impl.report(problems);
 }
 
 TextureStore::~TextureStore() = default;
 
-Texel TextureStore::sample(int texture, float u, float v, float width) const noexcept {
+Texel TextureStore::Impl::filtered(const Use& use, const TextureSource& s, float u, float v,
+                                   float level, std::uint32_t seed) const noexcept {
+    if (s.tile >= 0)
+        return cache->sample(s.tile, use.filter, u, v, level, use.wrap_u, use.wrap_v, seed);
+    return filter_pyramid(s.pyramid, use.filter, u, v, level, use.wrap_u, use.wrap_v, seed);
+}
+
+Texel TextureStore::sample(int texture, float u, float v, float width,
+                           std::uint32_t seed) const noexcept {
     assert(texture >= 0 && texture < size());
     const Use& use = impl_->uses[static_cast<std::size_t>(texture)];
-    const Source& s = impl_->sources[use.source];
+    const TextureSource* s = &impl_->sources[use.source];
     u = u * use.scale[0] + use.offset[0];
     v = v * use.scale[1] + use.offset[1];
     if (!std::isfinite(u)) u = 0;
     if (!std::isfinite(v)) v = 0;
+    if (use.set >= 0) [[unlikely]] {
+        const float column = std::floor(u), row = std::floor(v);
+        const int tile = impl_->sets[static_cast<std::size_t>(use.set)].at(column, row);
+        if (tile < 0) return kMagenta;
+        s = &impl_->sources[static_cast<std::size_t>(tile)];
+        u -= column;
+        v -= row;
+    }
     constexpr float kWidest = 1e6f;  // more texels than any picture has
     width = width > 0 ? std::min(width, kWidest) : 0;
     const float width_u = width * std::abs(use.scale[0]);
     const float width_v = width * std::abs(use.scale[1]);
+    const float texels =
+        std::max(width_u * static_cast<float>(s->width), width_v * static_cast<float>(s->height));
+    const float level = texels > 1 ? std::log2(texels) : 0;
     Texel texel;
-    if (s.tile < 0) {
-        const float texels =
-            std::max(width_u * static_cast<float>(s.width), width_v * static_cast<float>(s.height));
-        const float level = texels > 1 ? std::log2(texels) : 0;
-        texel = sample_pyramid(s.pyramid, u, v, level, use.wrap_u, use.wrap_v);
-    } else {
-        texel = impl_->cache->sample(s.tile, u, v, width_u, width_v, use.wrap_u, use.wrap_v);
-    }
+    if (s->tile < 0 && use.filter == TextureFilter::trilinear) [[likely]]
+        texel = sample_pyramid(s->pyramid, u, v, level, use.wrap_u, use.wrap_v);
+    else
+        texel = impl_->filtered(use, *s, u, v, level, seed);
     grade(texel, use);
     return texel;
 }
@@ -268,27 +332,54 @@ Texel TextureStore::sample(int texture, float u, float v, float width) const noe
 int TextureStore::size() const noexcept { return static_cast<int>(impl_->uses.size()); }
 
 Texel TextureStore::mean(int texture) const noexcept {
-    const Source& s = impl_->source(texture);
-    Texel texel = s.tile < 0 ? s.pyramid.mean : impl_->cache->mean(s.tile);
-    grade(texel, impl_->uses[static_cast<std::size_t>(texture)]);
-    return texel;
+    const Use& use = impl_->uses[static_cast<std::size_t>(texture)];
+    Texel sum{0, 0, 0, 0};
+    float count = 0;
+    impl_->each_source(use, [&](const TextureSource& s) {
+        const Texel t = s.tile < 0 ? s.pyramid.mean : impl_->cache->mean(s.tile);
+        for (std::size_t c = 0; c < 4; ++c) sum[c] += t[c];
+        ++count;
+    });
+    for (float& c : sum) c /= count;
+    grade(sum, use);
+    return sum;
 }
 
 bool TextureStore::channel_is_one(int texture, int c) const noexcept {
     const Use& use = impl_->uses[static_cast<std::size_t>(texture)];
-    const Source& s = impl_->sources[use.source];
-    if (c == 3 && !s.alpha) return true;
     const bool bounded = use.wrap_u == Wrap::black || use.wrap_v == Wrap::black;
     const bool graded = c < 3 && (use.gain != 1 || use.bias != 0);
-    return s.tile < 0 && !bounded && !graded && s.pyramid.is_one[static_cast<std::size_t>(c)];
+    bool one = true, any_alpha = false;
+    impl_->each_source(use, [&](const TextureSource& s) {
+        one = one && (s.tile < 0 ? s.pyramid.is_one[static_cast<std::size_t>(c)]
+                                 : impl_->cache->channel_is_one(s.tile, c));
+        any_alpha = any_alpha || s.alpha;
+    });
+    // Where a tile is missing stands magenta, whose green is 0.
+    const bool whole = use.set < 0 || c != 1;
+    return (c == 3 && !any_alpha) || (one && !bounded && !graded && whole);
 }
 
-bool TextureStore::has_alpha(int texture) const noexcept { return impl_->source(texture).alpha; }
+bool TextureStore::has_alpha(int texture) const noexcept {
+    bool any = false;
+    impl_->each_source(impl_->uses[static_cast<std::size_t>(texture)],
+                       [&](const TextureSource& s) { any = any || s.alpha; });
+    return any;
+}
 
-std::int64_t TextureStore::memory_bytes() const noexcept {
-    std::int64_t total = impl_->cache ? impl_->cache->memory_bytes() : 0;
-    for (const Source& s : impl_->sources) total += s.pyramid.memory_bytes();
-    return total;
+std::int64_t TextureStore::memory_bytes() const noexcept { return counts().memory_bytes; }
+
+TextureCounts TextureStore::counts() const noexcept {
+    TextureCounts c;
+    for (const TextureSource& s : impl_->sources) {
+        ++(s.tile < 0 ? c.in_core : c.cached);
+        c.memory_bytes += s.pyramid.memory_bytes();
+    }
+    if (!impl_->cache) return c;
+    c.memory_bytes += impl_->cache->memory_bytes();
+    c.bytes_read = impl_->cache->bytes_read();
+    c.failures = impl_->cache->failures();
+    return c;
 }
 
 }  // namespace tessera

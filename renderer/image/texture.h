@@ -1,7 +1,7 @@
 #pragma once
 // Filtered texture look-ups. Images live in memory as mip pyramids (8-bit with a decode table,
-// 16-bit, or half floats); those over kInCoreBytes go through OpenImageIO's tile cache. One
-// interface: the caller does not see which.
+// 16-bit, or half floats); those that a limit leaves no room for, or over kInCoreBytes, go through
+// OpenImageIO's tile cache. One interface: the caller does not see which.
 
 #include <array>
 #include <cstdint>
@@ -26,6 +26,20 @@ struct TextureRequest {
     TextureUse use = TextureUse::color;
 };
 
+struct TextureOptions {
+    std::int64_t memory_bytes = kTextureMemory;  // pyramids and tile cache together
+    bool auto_tx = false;   // what the tile cache reads badly is first made into a .tx
+    std::string tx_folder;  // "": default_tx_folder()
+};
+
+/// What textures hold and have read.
+struct TextureCounts {
+    int in_core = 0, cached = 0;    // files
+    std::int64_t memory_bytes = 0;  // now
+    std::int64_t bytes_read = 0;    // by the tile cache, decoded
+    std::int64_t failures = 0;      // look-ups that met a tile which cannot be read: magenta
+};
+
 /// RGBA; channels a file lacks: grey is spread over RGB, alpha is 1.
 using Texel = std::array<float, 4>;
 
@@ -36,9 +50,11 @@ public:
     /// Loads, in parallel if workers are given; results never depend on it. An unreadable file is
     /// reported once through problems.warn and becomes a magenta 1x1; NaN and infinite texels
     /// become 0 and are counted in the warning; an unknown colour space is a problems.error.
+    /// Which files stay in memory is decided by their sizes and order: place_sources().
     /// `colors` must outlive the store.
     TextureStore(const std::vector<TextureRequest>& requests, const ColorSpaces& colors,
-                 Problems& problems, Workers* workers = nullptr);
+                 Problems& problems, Workers* workers = nullptr,
+                 const TextureOptions& options = {});
     ~TextureStore();
     TextureStore(const TextureStore&) = delete;
     TextureStore& operator=(const TextureStore&) = delete;
@@ -46,19 +62,21 @@ public:
     /// Value at (u, v), v upward (v = 0 is the bottom row), after the texture's placement, wrap,
     /// gain and bias (the last two on RGB only; Wrap::black gives 0 outside, in alpha too if the
     /// file has one). width: footprint in uv units (the larger axis of the pixel's cone), 0 = the
-    /// finest level; trilinear between levels, bilinear within. Linear working-space colour for
-    /// TextureUse::color. Finite for any input (non-finite uv read as 0). Thread-safe.
-    Texel sample(int texture, float u, float v, float width) const noexcept;
+    /// finest level; the texture's filter. seed: what the stochastic filter draws by, with (u, v).
+    /// Linear working-space colour for TextureUse::color. Finite for any input (non-finite uv read
+    /// as 0). Thread-safe. Of a set of tiles: magenta where there is none.
+    Texel sample(int texture, float u, float v, float width, std::uint32_t seed = 0) const noexcept;
 
     int size() const noexcept;
     /// Mean over the image, RGBA, with gain and bias (for light importance and folding). An
-    /// estimate from coarse levels for images in the tile cache.
+    /// estimate from coarse levels for images in the tile cache that are no .tx of ours.
     Texel mean(int texture) const noexcept;
     /// True if every texel of channel c (0..3) equals 1: an alpha that cuts nothing out. False if
     /// not known (channels of the tile cache).
     bool channel_is_one(int texture, int c) const noexcept;
     bool has_alpha(int texture) const noexcept;
     std::int64_t memory_bytes() const noexcept;
+    TextureCounts counts() const noexcept;
 
 private:
     struct Impl;

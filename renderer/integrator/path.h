@@ -205,6 +205,7 @@ private:
             if (in.leaves_body()) return depth_[i].last ? stop(i) : void();
         }
         shade_in_[i] = shade_input<F>(scene_, program, hit_[i], cone_width_[i], d, s);
+        if constexpr (F.textures) shade_in_[i].seed = seeds_[i];
         if (depth == 0) note_first_hit(i, s);
         if constexpr (kMedia<F>) {
             if (program && program->facts().glass && meet_glass(i, *program)) return;

@@ -151,6 +151,7 @@ private:
         s.samples = counters_.samples;
         s.invalid = counters_.invalid;
         s.memory_film = film_.bytes();
+        count_textures(scene_, s);
         s.complete = r.complete;
         if (counters_.first.set) {
             const auto& f = counters_.first;

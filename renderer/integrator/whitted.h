@@ -119,8 +119,8 @@ private:
         node.cone_width += node.cone_spread * dot(v.s.p - node.ray.o, node.ray.d);
         if (node.depth == 0) note_first_hit(i);
         const ShaderProgram* program = v.s.material >= 0 ? &scene_.program(v.s.material) : nullptr;
-        const ShadeInput in =
-            shade_input<F>(scene_, program, hit, node.cone_width, node.ray.d, v.s);
+        ShadeInput in = shade_input<F>(scene_, program, hit, node.cone_width, node.ray.d, v.s);
+        if constexpr (F.textures) in.seed = seeds_[i];
         if (!program) {
             out_[i].radiance +=
                 node.weight * light_radiance(scene_.lights()[v.s.light], node.ray.d, v.s.ng);

@@ -152,4 +152,28 @@ AssetPath AssetRules::find(const std::string& name, const std::string& base_dir)
     return {"", "not found (searched: " + joined(searched) + ")", ""};
 }
 
+std::vector<std::string> AssetRules::names_beside(const std::string& name,
+                                                  const std::string& base_dir) const {
+    std::string text(trim(name));
+    std::replace(text.begin(), text.end(), '\\', '/');
+    if (text.empty() || text.size() > kLongestName || text.find('\0') != std::string::npos)
+        return {};
+    const bool foreign = has_drive(text) || text.starts_with('/');
+    const fs::path inner = foreign ? fs::path() : fs::path(text).parent_path();
+    std::vector<fs::path> folders;
+    if (text.starts_with('/')) folders.push_back(fs::path(text).parent_path());
+    folders.push_back(real_path(base_dir) / inner);
+    for (const std::string& root : roots_) folders.push_back(fs::path(root) / inner);
+    for (const fs::path& folder : folders) {
+        std::vector<std::string> names;
+        std::error_code error;
+        for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+             entry.increment(error))
+            names.push_back(entry->path().filename().string());
+        std::sort(names.begin(), names.end());
+        if (!names.empty()) return names;
+    }
+    return {};
+}
+
 }  // namespace tessera

@@ -28,6 +28,11 @@ public:
     /// check. Only regular files are found.
     AssetPath find(const std::string& name, const std::string& base_dir) const;
 
+    /// The names of all that lies in the folder that `name` points into, sorted; of several folders
+    /// that find() would search, the first that is there. Says nothing of what may be read.
+    std::vector<std::string> names_beside(const std::string& name,
+                                          const std::string& base_dir) const;
+
 private:
     std::vector<std::string> roots_;
     bool allow_external_ = false;

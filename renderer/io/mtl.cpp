@@ -10,6 +10,7 @@
 
 #include "renderer/io/mtl_material.h"
 #include "renderer/io/obj_text.h"
+#include "renderer/io/texture_files.h"
 
 namespace tessera {
 namespace {
@@ -138,17 +139,22 @@ void MtlLibraries::add(const std::string& names, const std::string& obj_path, st
 
 int MtlLibraries::Impl::texture(const MtlTexture& texture, Library& library, std::uint32_t line) {
     const SourceLoc loc{library.tally.file(), static_cast<int>(line), 0};
-    const AssetPath found = assets.find(texture.file, library.folder);
+    const TextureFiles files =
+        find_texture_files(assets, texture.file, library.folder, scene.render.frame);
+    const AssetPath& found = files.found;
     if (found.refused) {
         problems.error(loc, "texture '" + texture.file + "' " + found.reason);
         return -1;
     }
     if (!found.note.empty())
         library.tally.note("texture", line, "'" + texture.file + "' " + found.note);
+    if (!files.missing_frame.empty())
+        problems.damage(loc, "texture '" + files.name + "' " + files.missing_frame);
     TextureDesc desc;
     // A missing one, or one that is no regular file, keeps its name, below the library's folder,
     // for the texture store to report.
-    desc.file = found.path.empty() ? library.folder + "/" + texture.file : found.path;
+    desc.file = found.path.empty() ? library.folder + "/" + files.name : found.path;
+    desc.tiles = files.tiles;
     desc.color_space = color_space_of(texture.color_space);
     desc.wrap_u = desc.wrap_v = texture.clamp ? Wrap::clamp : Wrap::repeat;
     desc.scale = texture.scale;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "renderer/io/params.h"
+#include "renderer/io/texture_files.h"
 
 namespace tessera {
 namespace {
@@ -114,9 +115,17 @@ std::optional<SkyDesc::PlaceAndTime> parse_time(const std::string& text) {
 /// The path of an image; "" after an error.
 std::string find_image(const std::string& file, const Value& written, SceneReader& reader,
                        const ReadContext& at) {
-    const AssetPath found = reader.find(file, written.loc);
+    const TextureFiles files = find_texture_files(
+        reader.assets, file, reader.folder_of(written.loc), reader.scene.render.frame);
+    const AssetPath& found = files.found;
+    if (!files.tiles.empty()) {
+        at.problems.error(written.loc, "environment: file '" + file + "' is a set of tiles");
+        return {};
+    }
     if (found.path.empty())
-        at.problems.error(written.loc, "environment: file '" + file + "' " + found.reason);
+        at.problems.error(written.loc,
+                          "environment: file '" + files.name + "' " +
+                              (files.missing_frame.empty() ? found.reason : files.missing_frame));
     if (!found.note.empty()) at.problems.note(written.loc, "environment: " + found.note);
     return found.path;
 }

@@ -10,6 +10,8 @@ namespace tessera {
 namespace {
 
 constexpr int kMaxDepth = 512;
+const std::set<std::string, std::less<>> kImageKeys{"file",        "wrap", "filter", "frame_offset",
+                                                    "color_space", "gain", "bias"};
 const std::vector<std::string> kLayerKeys{"value", "mask", "opacity", "blend"};
 
 const NodeInfo& info_of(const NodeDesc& node) {
@@ -164,9 +166,7 @@ std::optional<int> NodeReader::read_node(const Value& table, NodeType wanted,
     bool good = true;
     NodeType widest = NodeType::scalar;
     for (const auto& [key, value] : *table.table()) {
-        static const std::set<std::string, std::less<>> image_keys{"file", "wrap", "color_space",
-                                                                   "gain", "bias"};
-        if (key == "type" || key == "output" || (image && image_keys.contains(key))) continue;
+        if (key == "type" || key == "output" || (image && kImageKeys.contains(key))) continue;
         const auto inputs = info.inputs();
         const auto input = std::find_if(
             inputs.begin(), inputs.end(),
@@ -215,7 +215,7 @@ bool NodeReader::read_image(const Value& table, NodeType wanted, NodeDesc& node,
                             const ReadContext& at) {
     Value own{Table{}, table.loc};
     Table& keys = std::get<Table>(own.data);
-    for (const char* key : {"file", "wrap", "color_space", "gain", "bias"})
+    for (const std::string& key : kImageKeys)
         if (const Value* value = table.find(key)) keys[key] = *value;
     TextureEntry entry;
     read_keys(own, color_texture_keys(), entry, at);

@@ -25,7 +25,7 @@ int SceneReader::add_texture(TextureDesc texture) {
     for (const double number :
          {double(texture.wrap_u), double(texture.wrap_v), double(texture.scale[0]),
           double(texture.scale[1]), double(texture.offset[0]), double(texture.offset[1]),
-          double(texture.gain), double(texture.bias)}) {
+          double(texture.gain), double(texture.bias), double(texture.filter)}) {
         identity += '\n' + number_text(number);
     }
     const auto [entry, is_new] =

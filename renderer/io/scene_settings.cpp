@@ -8,6 +8,7 @@ namespace tessera {
 namespace {
 
 constexpr Limits kDepth{.low = 0, .high = 10000};
+constexpr Limits kFrame{.low = -1e6, .high = 1e6};
 constexpr Limits kSeed{.low = 0, .high = 9.2e18};
 constexpr std::int64_t kMaxPixels = std::int64_t(1) << 30;
 
@@ -94,6 +95,7 @@ const KeySet<RenderDesc>& render_rows() {
                  kDepth),
              key("min_depth", &R::min_depth, "No path is ended by chance before this many bounces.",
                  kDepth),
+             key("frame", &R::frame, "Frame of image sequences.", kFrame),
          }}};
     return keys;
 }

@@ -1,18 +1,29 @@
 #include "renderer/io/scene_textures.h"
 
+#include "renderer/io/texture_files.h"
+
 namespace tessera {
 namespace {
 
 using T = TextureEntry;
+constexpr double kMostFrames = 1e6;
 
 std::vector<Key> placement_rows() {
     return {
-        key("file", &T::file, "The image.").must(),
+        key("file", &T::file,
+            "The image. In its name: '####', '%04d' or '<frame>' for the frame, '<UDIM>' or "
+            "'<UVTILE>' for tiles.")
+            .must(),
         uniform_key("scale", &T::scale,
                     "uv * scale + offset is looked up: 4 repeats the image 4 times."),
         key("offset", &T::offset, "Added to uv after scale."),
         choice("wrap", &T::wrap, {"repeat", "clamp", "mirror", "black"},
                "What lies outside the image."),
+        choice("filter", &T::filter, {"trilinear", "closest", "bilinear", "bicubic", "stochastic"},
+               "How texels become a value; closest and bilinear read the finest level only."),
+        key("frame_offset", &T::frame_offset,
+            "Added to [render] frame where the file's name counts frames.",
+            {.low = -kMostFrames, .high = kMostFrames}),
     };
 }
 
@@ -69,17 +80,24 @@ int add_texture(const Value& table, const TextureEntry& entry, const ReadContext
     if (entry.file.empty()) return -1;  // reported as missing
     const Value* written = table.find("file");
     const SourceLoc loc = written ? written->loc : table.loc;
-    const AssetPath found = reader.find(entry.file, loc);
+    const TextureFiles files = find_texture_files(reader.assets, entry.file, reader.folder_of(loc),
+                                                  reader.scene.render.frame + entry.frame_offset);
+    const AssetPath& found = files.found;
     if (found.refused) {
         at.problems.error(loc, at.subject + ": texture '" + entry.file + "' " + found.reason);
         return -1;
     }
     if (!found.note.empty()) at.problems.note(loc, at.subject + ": texture " + found.note);
+    if (!files.missing_frame.empty())
+        at.problems.damage(loc,
+                           at.subject + ": texture '" + files.name + "' " + files.missing_frame);
     TextureDesc texture;
-    texture.file = found.path.empty() ? reader.folder_of(loc) + "/" + entry.file : found.path;
+    texture.file = found.path.empty() ? reader.folder_of(loc) + "/" + files.name : found.path;
+    texture.tiles = files.tiles;
     texture.color_space = entry.color_space;
     texture.wrap_u = entry.wrap;
     texture.wrap_v = entry.wrap_v.value_or(entry.wrap);
+    texture.filter = entry.filter;
     texture.scale = entry.scale;
     texture.offset = entry.offset;
     texture.gain = entry.gain;

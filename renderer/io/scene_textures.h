@@ -18,6 +18,8 @@ struct TextureEntry {
     Float2 offset{0, 0};
     Wrap wrap = Wrap::repeat;
     std::optional<Wrap> wrap_v = {};  // along v, where it differs
+    TextureFilter filter = TextureFilter::trilinear;
+    int frame_offset = 0;
     std::string color_space;
     float gain = 1;
     float bias = 0;
@@ -35,7 +37,7 @@ const KeySet<TextureEntry>& normal_texture_keys();
 
 /// The texture's index, -1 for an entry without a file name or, reported, for one outside the
 /// scene's folders. A file that is not there keeps its name, for the texture store to report and to
-/// show in magenta.
+/// show in magenta; a frame that is not there is an error (a warning when lenient).
 int add_texture(const Value& table, const TextureEntry& entry, const ReadContext& at,
                 SceneReader& reader);
 

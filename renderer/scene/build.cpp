@@ -90,8 +90,10 @@ private:
         }
         if (!requests.empty()) {
             colors();
-            scene_->textures_ =
-                std::make_unique<TextureStore>(requests, *scene_->colors_, problems_);
+            const TextureOptions textures{options_.texture_memory, options_.auto_tx,
+                                          options_.tx_cache};
+            scene_->textures_ = std::make_unique<TextureStore>(requests, *scene_->colors_,
+                                                               problems_, nullptr, textures);
         }
         textures_left_out_ = n - requests.size();
         for (const MaterialDesc& m : desc_.materials)
@@ -388,8 +390,8 @@ private:
         s.memory_geometry += g.placements.capacity() * sizeof(Placement);
         s.memory_bvh =
             static_cast<std::uint64_t>(std::max<std::int64_t>(0, scene_->accel_->bytes()));
-        s.memory_textures =
-            scene_->textures_ ? static_cast<std::uint64_t>(scene_->textures_->memory_bytes()) : 0;
+        s.texture_limit = static_cast<std::uint64_t>(options_.texture_memory);
+        count_textures(*scene_, s);
         s.memory_lights = scene_->lights_.bytes();
         s.lights = static_cast<std::uint64_t>(scene_->lights_.size());
         if (bake_report_.degenerate > 0) {
@@ -458,6 +460,16 @@ ScenePtr build_scene(SceneDesc&& desc, const BuildOptions& options) {
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     const_cast<Statistics&>(scene->statistics()).build_s = spent.count();
     return scene;
+}
+
+void count_textures(const Scene& scene, Statistics& s) {
+    if (!scene.textures()) return;
+    const TextureCounts c = scene.textures()->counts();
+    s.memory_textures = static_cast<std::uint64_t>(c.memory_bytes);
+    s.textures_in_core = static_cast<std::uint64_t>(c.in_core);
+    s.textures_cached = static_cast<std::uint64_t>(c.cached);
+    s.texture_bytes_read = static_cast<std::uint64_t>(c.bytes_read);
+    s.texture_failures = static_cast<std::uint64_t>(c.failures);
 }
 
 Statistics describe(const Scene& scene) { return scene.statistics(); }

@@ -55,8 +55,10 @@ public:
         all(n.type, n.inputs, n.texture, n.color);
         for (const bool given : n.given) (*this)(given);
     }
+    void operator()(const TextureTile& t) { all(t.column, t.row, t.file); }
     void operator()(const TextureDesc& t) {
-        all(t.file, t.color_space, t.wrap_u, t.wrap_v, t.scale, t.offset, t.gain, t.bias);
+        all(t.file, t.tiles, t.color_space, t.wrap_u, t.wrap_v, t.filter, t.scale, t.offset, t.gain,
+            t.bias);
     }
     void operator()(const MaterialDesc& m) {
         (*this)(m.name);

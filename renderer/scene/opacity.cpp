@@ -40,6 +40,7 @@ bool opacity_stops(const void* opaque_scene, const Hit& hit, std::uint32_t seed)
     }
     const ShaderProgram& program = scene.program(material);
     if (!program.facts().cutout) return true;
+    in.seed = seed;
     const float opacity = placed.kind == PlacedKind::mesh ? program.opacity(in, scene.textures())
                                                           : program.opacity_factor();
     if (opacity >= 1.0f) return true;

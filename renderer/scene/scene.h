@@ -58,4 +58,7 @@ private:
     Statistics statistics_;
 };
 
+/// What the textures hold and have read by now.
+void count_textures(const Scene& scene, Statistics& s);
+
 }  // namespace tessera

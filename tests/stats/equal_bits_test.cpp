@@ -89,6 +89,18 @@ SceneDesc shiny_scene(const TempFolder& folder) {
     return s;
 }
 
+/// Colour and opacity by drawn texels.
+SceneDesc stochastic_scene(const TempFolder& folder) {
+    SceneDesc s = shiny_scene(folder);
+    s.textures[0].filter = TextureFilter::stochastic;
+    s.textures[0].scale = {3.3f, 2.1f};
+    MaterialDesc sheet = matte(1);
+    sheet.base_color.texture = 0;
+    sheet.geometry_opacity.texture = 0;
+    add_mesh(s, box_mesh({-0.3, 0.6, 1.4}, 0.5, add(s, sheet)));
+    return s;
+}
+
 SceneDesc glass_scene(const TempFolder& folder) {
     SceneDesc s = shiny_scene(folder);
     add_sphere(s, {0.9, 0.5, 1.5}, 0.5, add(s, glass(0)));
@@ -177,4 +189,33 @@ TEST_CASE("equal bits: beauty does not change when other passes are left out") {
     const auto all = beauty_of(scene);
     scene.film.aovs = {"beauty"};
     CHECK(beauty_of(scene) == all);
+}
+
+TEST_CASE("equal bits: texels drawn at random are drawn by the path, not by its schedule") {
+    const TempFolder folder;
+    check_schedules(stochastic_scene(folder));
+    check_crops(stochastic_scene(folder));
+    SceneDesc whitted = stochastic_scene(folder);
+    whitted.render.integrator = Integrator::whitted;
+    check_schedules(whitted);
+    check_crops(whitted);
+    // The filter does something: the same texels by their weights are another picture.
+    SceneDesc smooth = stochastic_scene(folder);
+    smooth.textures[0].filter = TextureFilter::trilinear;
+    CHECK(rendered(smooth) != rendered(stochastic_scene(folder)));
+}
+
+TEST_CASE("equal bits: with .tx files the memory for textures changes nothing") {
+    const TempFolder folder;
+    for (SceneDesc scene : {shiny_scene(folder), stochastic_scene(folder)}) {
+        // A lamp that shines by its texture is weighed by the texture's mean.
+        scene.materials[0].emission_luminance.value = 500;
+        scene.materials[0].emission_color.texture = 0;
+        BuildOptions tight;
+        tight.texture_memory = 1;
+        tight.auto_tx = true;
+        tight.tx_cache = folder / "tx";
+        CHECK(rendered(scene, tight) == rendered(scene));
+        CHECK(build_scene(SceneDesc(scene), tight)->statistics().textures_cached == 1);
+    }
 }

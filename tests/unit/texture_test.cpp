@@ -361,7 +361,7 @@ TEST_CASE("texture: a picture over the in-core size reads the same through the t
     Fixture f;
     f.load({from_file(folder / "big.tif", Wrap::clamp)}, TextureUse::color);
     REQUIRE(f.problems.notes().size() == 1);
-    CHECK(f.problems.notes()[0].find("maketx") != std::string::npos);
+    CHECK(f.problems.notes()[0].find("--auto-tx") != std::string::npos);
     CHECK(f.store->memory_bytes() < 64 << 20);
     for (const auto& [u, v] : {std::pair{0.2f, 0.9f}, {0.7f, 0.4f}, {0.95f, 0.05f}}) {
         const float code = (u * 128 + (1 - v) * 100) / 255;
