@@ -227,3 +227,19 @@ TEST_CASE("reflection map: the environment itself as the map changes nothing") {
         CHECK(std::fabs(z_of(whole.channel[1], mapped.channel[1])) < limit());
     }
 }
+
+TEST_CASE("own surroundings: the picture has the same bits for any number of threads and tile") {
+    const Images images;
+    const SceneDesc scene =
+        ball(images.folder,
+             "[environment]\nfile = 'lively.exr'\nreflection = 'lively_green.exr'\n[[disc]]\n"
+             "center = [0, -1, 0]\nradius = 5\n",
+             "transmission_weight = 0.5\nspecular_roughness = 0.2\nreflection_map = { file = "
+             "'lively.exr', "
+             "position = [0, 0, 0], radius = 4 }\n",
+             40);
+    RenderSettings one, other;
+    one.threads = 1, one.tile = 32;
+    other.threads = 2, other.tile = 4;
+    CHECK(beauty_of(scene, {}, one) == beauty_of(scene, {}, other));
+}
