@@ -28,6 +28,13 @@ struct LobeSamples {
     std::uint32_t cls[kLanes];  // LobeClass
 };
 
+/// Lobes that scatter light from everywhere to everywhere; the others mirror and refract.
+template <class Model>
+inline constexpr bool kMatte =
+    std::is_same_v<Model, DiffuseLobe> || std::is_same_v<Model, EonLobe> ||
+    std::is_same_v<Model, FuzzLobe> || std::is_same_v<Model, DiffuseTransmission> ||
+    std::is_same_v<Model, SubsurfaceEntry>;
+
 template <class Model>
 struct LobesOfKind {
     using Kind = Model;
@@ -127,6 +134,26 @@ public:
         return (bounced | weigh(lanes & ~bounced, out)) & lanes;
     }
 
+    /// Of one lane's specular lobes alone, or of its others, as eval().
+    LobeEval eval(int lane, Vec3f wi, bool specular) const noexcept {
+        LobeEval sum;
+        each_kind([&](const auto& kind) {
+            using Model = typename std::remove_cvref_t<decltype(kind)>::Kind;
+            if constexpr (!Model::kDelta) {
+                if (specular == kMatte<Model> || !(kind.chance[lane] > 0.0f)) return;
+                const LobeEval e = share<Model>(kind, lane, wi);
+                sum.f += e.f;
+                sum.pdf += e.pdf;
+            }
+        });
+        return sum;
+    }
+    /// Whether sample() took a specular lobe.
+    bool took_specular(int lane) const noexcept {
+        constexpr bool kSpecular[] = {!kMatte<Models>...};
+        return chosen_[lane] < sizeof...(Models) && kSpecular[chosen_[lane]];
+    }
+
     /// Directional albedo toward wo, roughly; for the albedo pass.
     Color albedo(int lane) const noexcept {
         Color sum(0.0f);
@@ -182,14 +209,20 @@ private:
     [[gnu::flatten]] void add_values(LaneMask lanes) noexcept {
         const auto& kind = std::get<LobesOfKind<Model>>(kinds_);
         all_or_few(lanes, [&](int i) {
-            const LobeEval e = kind.model.get(i).eval(wo[i], wi_[i]);
+            const LobeEval e = share<Model>(kind, i, wi_[i]);
             const bool there = kind.chance[i] > 0.0f;
-            Color f = e.f * kind.weight[i];
-            if constexpr (requires { Model::kDiffuse; }) f *= softened_terminator(even[i], wi_[i]);
-            f += f_[i];
+            const Color f = e.f + f_[i];
             f_.set(i, pick(there, f, f_[i]));
-            pdf_[i] = pick(there, pdf_[i] + e.pdf * kind.chance[i], pdf_[i]);
+            pdf_[i] = pick(there, pdf_[i] + e.pdf, pdf_[i]);
         });
+    }
+    // What one kind adds to a lane's value and density.
+    template <class Model>
+    LobeEval share(const LobesOfKind<Model>& kind, int i, Vec3f wi) const noexcept {
+        const LobeEval e = kind.model.get(i).eval(wo[i], wi);
+        Color f = e.f * kind.weight[i];
+        if constexpr (requires { Model::kDiffuse; }) f *= softened_terminator(even[i], wi);
+        return {f, e.pdf * kind.chance[i]};
     }
 
     // The last kind at or above whose lower bound the choice lies; the rest is stretched to [0, 1).

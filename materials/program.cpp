@@ -374,9 +374,8 @@ float ShaderProgram::opacity(const ShadeInput& in, const TextureStore* store) co
     const FloatInput& o = m_.geometry_opacity;
     if (o.node >= 0) return kept(GraphRun(opacity_graph_, in, store).value(opacity_).x, 0.0f, 1.0f);
     if (o.texture < 0) return o.value;
-    const float v =
-        channel_of(store->sample(o.texture, in.uv.x, in.uv.y, 0.0f, in.seed),
-                   opacity_channel(o, store));
+    const float v = channel_of(store->sample(o.texture, in.uv.x, in.uv.y, 0.0f, in.seed),
+                               opacity_channel(o, store));
     return clamp01(o.value * (o.invert ? 1.0f - v : v));
 }
 

@@ -109,6 +109,32 @@ struct NodeDesc {
     bool color = true;  // the image is one of colours, not of data
 };
 
+/// How a picture shows all directions; automatic: by its shape.
+enum class EnvironmentMap : std::uint8_t {
+    automatic,
+    latlong,
+    cube_cross_horizontal,
+    cube_cross_vertical,
+    cube_strip,
+    mirror_ball,
+    angular,
+};
+
+/// What a material mirrors in place of the scene: a picture of all directions, taken near by.
+struct ReflectionMapDesc {
+    SourceLoc loc;
+    std::string file;  // resolved path
+    EnvironmentMap projection = EnvironmentMap::automatic;
+    std::string color_space;  // "" = linear working space
+    double scale = 1;
+    double rotate_deg = 0;  // about +y
+    /// Where it was taken, and the walls that it shows: a sphere about that point or a box between
+    /// two corners. Without walls they are infinitely far.
+    Double3 position{0, 0, 0};
+    double radius = 0;
+    std::optional<std::array<Double3, 2>> box;
+};
+
 /// OpenPBR Surface 1.1 with its own names, units and defaults.
 struct MaterialDesc {
     std::string name;
@@ -169,6 +195,7 @@ struct MaterialDesc {
 
     int dielectric_priority = 0;    // of nested glass the higher number fills the overlap
     bool use_vertex_color = false;  // base_color is multiplied by the mesh's vertex colours
+    std::optional<ReflectionMapDesc> reflection_map;
 };
 
 /// Luminous efficacy of white light, equal energy over the visible band: what turns nits into the
@@ -292,28 +319,24 @@ struct LightDesc {
 };
 
 /// Light from all around. With a file: lat-long, y up, u = 0.5 looks along -z at rotate_deg 0.
-/// How a picture shows all directions; automatic: by its shape.
-enum class EnvironmentMap : std::uint8_t {
-    automatic,
-    latlong,
-    cube_cross_horizontal,
-    cube_cross_vertical,
-    cube_strip,
-    mirror_ball,
-    angular,
-};
-
 struct EnvironmentDesc {
     SourceLoc loc;
     std::string file;  // resolved path; "" = constant
     std::vector<std::string>
         faces;  // in its place: six files, +x -x +y -y +z -z as seen from inside
+    std::string camera, lighting, reflection;  // in its place for one kind of ray; "" = none
     EnvironmentMap projection = EnvironmentMap::automatic;
     std::string color_space;   // "" = linear working space
     Float3 radiance{1, 1, 1};  // constant, or the factor on the image
     double rotate_deg = 0;     // about +y
     bool visible = true;       // to camera rays
 };
+
+/// Whether it reads any picture.
+inline bool has_image(const EnvironmentDesc& e) {
+    return !(e.file.empty() && e.faces.empty() && e.camera.empty() && e.lighting.empty() &&
+             e.reflection.empty());
+}
 
 /// A clear sky and its sun, computed. North is -z, east +x.
 struct SkyDesc {
@@ -338,7 +361,8 @@ struct SkyDesc {
 // ---- camera, film, settings
 // -----------------------------------------------------------------------
 
-enum class Projection : std::uint8_t { perspective, orthographic };
+/// latlong and cube show all directions around the position; the world's axes are those of the map.
+enum class Projection : std::uint8_t { perspective, orthographic, latlong, cube };
 enum class FovAxis : std::uint8_t { vertical, horizontal };
 
 struct CameraDesc {
@@ -393,6 +417,16 @@ struct RenderDesc {
     int min_depth = 1;  // no Russian roulette before this many bounces
     int frame = 1;      // of image sequences
 };
+
+inline bool shows_all_directions(Projection p) {
+    return p == Projection::latlong || p == Projection::cube;
+}
+/// The resolution of such a picture where none is asked for: 2:1, or six squares side by side.
+inline void set_map_size(Projection p, FilmDesc& film) {
+    film.width = p == Projection::cube ? 1536 : 1024;
+    film.height = p == Projection::cube ? 256 : 512;
+    film.crop.reset();
+}
 
 struct SceneDesc {
     std::string path;  // the file that was asked for

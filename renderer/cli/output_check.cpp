@@ -58,7 +58,13 @@ void check_outputs_spare(const std::vector<OutputFile>& outputs, const SceneDesc
     std::vector<std::string> inputs = scene.files;
     inputs.push_back(scene.path);
     for (const TextureDesc& texture : scene.textures) inputs.push_back(texture.file);
-    if (scene.environment) inputs.push_back(scene.environment->file);
+    if (const auto& e = scene.environment) {
+        inputs.insert(inputs.end(), {e->file, e->camera, e->lighting, e->reflection});
+        inputs.insert(inputs.end(), e->faces.begin(), e->faces.end());
+    }
+    for (const MaterialDesc& m : scene.materials) {
+        if (m.reflection_map) inputs.push_back(m.reflection_map->file);
+    }
     for (const OutputFile& output : outputs) {
         if (output.path.empty()) continue;
         for (const std::string& input : inputs) {

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 
 #include "renderer/film/film.h"
 
@@ -47,6 +48,30 @@ PixelWindow parse_crop(const std::string& text) {
     return {c[0], c[1], c[2], c[3]};
 }
 
+std::optional<Double3> parse_position(const std::string& text) {
+    if (text.empty()) return std::nullopt;
+    Double3 p{};
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (i > 0 && at != end && *at == ',') ++at;
+        const auto [stop, code] = std::from_chars(at, end, p[i]);
+        const bool good = code == std::errc() && std::fabs(p[i]) <= 1e12;
+        if (!good || (i < 2 ? stop == end || *stop != ',' : stop != end))
+            usage("--camera-position " + text +
+                  ": must be X,Y,Z in scene units, for example 0,1.5,-2");
+        at = stop;
+    }
+    return p;
+}
+
+void stand_at(const Double3& p, CameraDesc& camera) {
+    camera.position = p;
+    camera.automatic = false;
+    if (!camera.matrix) return;
+    for (std::size_t i = 0; i < 3; ++i) (*camera.matrix)[4 * i + 3] = p[i];
+}
+
 void apply_crop(const PixelWindow& c, const std::string& text, FilmDesc& film) {
     if (c.x0 < 0 || c.y0 < 0 || c.x1 > film.width || c.y1 > film.height || c.x0 >= c.x1 ||
         c.y0 >= c.y1) {
@@ -62,6 +87,10 @@ void SceneOptions::add_to(CLI::App& app) {
     app.add_option("scene", scene, "Scene: an .obj or a Tessera scene file (.toml)")->required();
     app.add_option("-s,--spp", spp, "Samples per pixel")->check(CLI::Range(1, 1 << 24));
     app.add_option("-r,--res", res, "Resolution, WIDTHxHEIGHT");
+    app.add_option("--camera", camera,
+                   "A picture of all directions, to be an environment's file: latlong or cube")
+        ->check(CLI::IsMember({"latlong", "cube"}));
+    app.add_option("--camera-position", camera_position, "Where the camera stands, X,Y,Z");
     app.add_option("--crop", crop, "Crop window X0,Y0,X1,Y1 in pixels of the full frame");
     app.add_option("--seed", seed, "Seed of the sampling");
     app.add_option("--frame", frame, "Frame of image sequences")
@@ -108,12 +137,18 @@ SceneDesc SceneOptions::load(double& load_s) const {
     }
     const std::vector<int> size = res.empty() ? std::vector<int>{} : parse_resolution(res);
     const PixelWindow window = crop.empty() ? PixelWindow{} : parse_crop(crop);
+    const std::optional<Double3> position = parse_position(camera_position);
     LoadOptions options;
     options.strictness = strictness();
     options.allow_external_assets = external;
     options.set = set;
     if (frame) options.set.push_back("render.frame=" + std::to_string(*frame));
     SceneDesc desc = load_scene(scene, options);
+    if (!camera.empty()) {
+        desc.camera.projection = camera == "cube" ? Projection::cube : Projection::latlong;
+        set_map_size(desc.camera.projection, desc.film);
+    }
+    if (position) stand_at(*position, desc.camera);
     if (!size.empty()) {
         desc.film.width = size[0];
         desc.film.height = size[1];

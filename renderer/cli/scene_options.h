@@ -17,6 +17,7 @@ struct SceneOptions {
     std::string scene;
     std::vector<std::string> set;
     std::vector<std::string> aovs;
+    std::string camera, camera_position;
     std::string res, crop, kernel, isa;
     std::optional<int> spp, frame;
     std::optional<std::uint64_t> seed;

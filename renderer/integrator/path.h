@@ -11,6 +11,7 @@
 
 #include "renderer/core/robust.h"
 #include "renderer/core/sampler.h"
+#include "renderer/integrator/apart.h"
 #include "renderer/integrator/block.h"
 #include "renderer/integrator/inside.h"
 #include "renderer/integrator/ray_log.h"
@@ -71,7 +72,7 @@ private:
         film_points(job_, film);
         if constexpr (F.lens) sample_pairs(job_.seeds, job_.index, dim::kLens, lens);
         const Camera& camera = scene_.camera();
-        camera.rays(film, lens, packet_.ray);
+        camera.rays(film, lens, job_.x, packet_.ray);
         each(job_.lanes, [&](int i) {
             out_[i] = PathSample{};
             ray_[i] = packet_.ray.get(i);
@@ -155,7 +156,7 @@ private:
         Vec3Lanes d;
         Color seen[kLanes];
         each(escaped_, [&](int i) { d.set(i, ray_[i].d); });
-        scene_.lights().escaped(escaped_, d, bsdf_pdf_, depth == 0, seen);
+        scene_.lights().escaped(escaped_, apart_.sent(), d, bsdf_pdf_, depth == 0, seen);
         each(escaped_, [&](int i) {
             out_[i].radiance += throughput_[i] * seen[i];
             // What a mirror shows of the surroundings counts as white.
@@ -291,6 +292,7 @@ private:
 
     void find_lobes() noexcept {
         lobes_.clear();
+        if constexpr (F.apart) apart_.clear();
         each(alive_, [&](int i) {
             from_[i] = {surface_[i].p + frame_.lift[i]};
             const ShaderProgram& program = scene_.program(surface_[i].material);
@@ -303,6 +305,7 @@ private:
                     surface_[i], program, shade_in_[i], scene_.textures(), view.front,
                     frame_.shading(i), frame_.shading(i).to_local(frame_.guard[i]), lobes_.wo[i]);
             }
+            if constexpr (F.apart) apart_.find(i, surface_[i].material, view.front);
             push_lobes<F>(program, shade_in_[i], scene_.textures(), view, i, lobes_);
         });
         lobes_.prepare();
@@ -322,7 +325,7 @@ private:
         if (lanes == 0) return;
         each(lanes, [&](int i) { look_at_emitter(i); });
         lobes_.eval(lanes, wi_);
-        lanes &= weigh_lights();
+        lanes &= weigh_lights(lanes);
         if constexpr (kMedia<F>) {
             each(lanes, [&](int i) {
                 const Medium* medium = inside_[i].medium();
@@ -366,7 +369,7 @@ private:
     }
 
     // What the lights give if nothing is in the way. Returns the lanes that it is worth a ray for.
-    LaneMask weigh_lights() noexcept {
+    LaneMask weigh_lights(LaneMask lanes) noexcept {
         LaneFlags lit;
         for (int i = 0; i < kLanes; ++i) {
             const float pdf = light_.pdf[i], ratio = lobes_.pdf(i) / pdf;
@@ -375,6 +378,13 @@ private:
             const Color c = throughput_[i] * lobes_.f(i) * light_.radiance[i] * (weight / pdf);
             pending_.set(i, c);
             lit.is[i] = max_component(c) > 0.0f;
+        }
+        if constexpr (F.apart) {
+            each(lanes & apart_.lanes(), [&](int i) {
+                const Color c = apart_.weigh_light(i, lobes_, wi_[i], light_);
+                pending_.set(i, throughput_[i] * c);
+                lit.is[i] = max_component(pending_[i]) > 0.0f;
+            });
         }
         return lit.mask();
     }
@@ -406,8 +416,10 @@ private:
     // ---- scatter: the paths go on, or stop
     void scatter(std::uint32_t depth) noexcept {
         alive_ = lobes_.sample(alive_, bsdf_u_, choice_u_.y, scattered_);
+        if constexpr (F.apart) alive_ = apart_.weigh_samples(alive_, lobes_, scattered_);
         weigh_paths();
         alive_ &= leave_surfaces();
+        if constexpr (F.apart) read_reflection_maps();
         if (depth >= static_cast<std::uint32_t>(settings_.min_depth)) alive_ &= play_roulette();
         each(alive_, [&](int i) {
             if (!carry_on(i, depth)) stop(i);
@@ -485,13 +497,24 @@ private:
         return true;
     }
 
+    // Paths that go on by reflection may end in a map.
+    void read_reflection_maps() noexcept {
+        each(alive_ & apart_.lanes(), [&](int i) {
+            const ReflectionMap* map = apart_.end(i, scattered_.wi[i]);
+            if (!map) return;
+            out_[i].radiance += throughput_[i] * map->seen(surface_[i].p, next_d_[i]);
+            if (!depth_[i].layers_done && bsdf_pdf_[i] == 0.0f) out_[i].albedo = throughput_[i];
+            stop(i);
+        });
+    }
+
     // ---- passes
     void note_first_hit(int i, const SurfacePoint& s) noexcept {
         out_[i].alpha = 1.0f;
         if (!job_.layers) return;
         PathSample& o = out_[i];
         o.hit = true;
-        o.z = dot(s.p - scene_.camera().position(), scene_.camera().forward());
+        o.z = scene_.camera().depth(s.p);
         o.p = Vec3f(Vec3d(s.p) + scene_.origin());
         o.n = dot(s.ns, ray_[i].d) <= 0.0f ? s.ns : -s.ns;
     }
@@ -541,6 +564,7 @@ private:
     Lanes<PathDepth> depth_;
     struct Nothing {};
     std::conditional_t<kMedia<F>, Lanes<Inside>, Nothing> inside_;
+    std::conditional_t<F.apart, Apart, NoneApart> apart_{scene_};
 
     // Their present vertices.
     Lanes<Hit> hit_;

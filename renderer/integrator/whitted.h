@@ -62,7 +62,7 @@ private:
         film_points(job_, film);
         sample_pairs(job_.seeds, job_.index, dim::kLens, lens);
         const Camera& camera = scene_.camera();
-        camera.rays(film, lens, packet_.ray);
+        camera.rays(film, lens, job_.x, packet_.ray);
         for (LaneMask m = job_.lanes; m != 0; m &= m - 1) {
             const int i = std::countr_zero(m);
             out_[i] = PathSample{};
@@ -213,6 +213,12 @@ private:
         const Vec3f wi = v.frame.shading.to_world(s.to.wi);
         const Color weight = node.weight * s.weight * share;
         if (!(max_component(weight) > kFaintest) || !same_side(wi, s.to.wi, v.frame.guard)) return;
+        const bool mirrors =
+            s.to.wi.z > 0.0f && (v.frame.front || !scene_.program(v.s.material).facts().glass);
+        if (const ReflectionMap* map = mirrors ? scene_.reflection_map(v.s.material) : nullptr) {
+            out_[i].radiance += weight * map->seen(v.s.p, wi);
+            return;
+        }
         push(i,
              {{ray_origin(v.s.p, v.s.p_error, v.s.ng, v.frame.lift, wi, s.to.wi), wi, kInfinity,
                kOtherRays},
@@ -228,7 +234,7 @@ private:
         const SurfacePoint& s = vertex_[i].s;
         o.alpha = 1.0f;
         o.hit = true;
-        o.z = dot(s.p - scene_.camera().position(), scene_.camera().forward());
+        o.z = scene_.camera().depth(s.p);
         o.p = Vec3f(Vec3d(s.p) + scene_.origin());
         o.n = dot(s.ns, node_[i].ray.d) <= 0.0f ? s.ns : -s.ns;
     }

@@ -16,6 +16,11 @@ struct EnvironmentEntry {
     double scale = 1;
 };
 
+std::vector<std::string> map_projections() {
+    return {"automatic",   "latlong", "cube_cross_horizontal", "cube_cross_vertical", "cube_strip",
+            "mirror_ball", "angular"};
+}
+
 const KeySet<EnvironmentDesc>& environment_part() {
     using E = EnvironmentDesc;
     static const KeySet<E> keys{
@@ -24,9 +29,11 @@ const KeySet<EnvironmentDesc>& environment_part() {
              key("file", &E::file, "Image of all directions, y up; its middle looks along -z."),
              key("faces", &E::faces,
                  "Six images in its place: +x -x +y -y +z -z as seen from inside."),
-             choice("projection", &E::projection,
-                    {"automatic", "latlong", "cube_cross_horizontal", "cube_cross_vertical",
-                     "cube_strip", "mirror_ball", "angular"},
+             key("camera", &E::camera, "Image that camera rays see in place of file."),
+             key("lighting", &E::lighting, "Image that surfaces are lit by in place of file."),
+             key("reflection", &E::reflection,
+                 "Image that mirrors, gloss and glass show in place of file."),
+             choice("projection", &E::projection, map_projections(),
                     "How the image shows all directions; automatic: by its shape."),
              key("radiance", &E::radiance,
                  "Radiance from everywhere, W/m2/sr; with a file, a factor on the image.",
@@ -119,18 +126,64 @@ std::string find_image(const std::string& file, const Value& written, SceneReade
         reader.assets, file, reader.folder_of(written.loc), reader.scene.render.frame);
     const AssetPath& found = files.found;
     if (!files.tiles.empty()) {
-        at.problems.error(written.loc, "environment: file '" + file + "' is a set of tiles");
+        at.problems.error(written.loc, at.subject + ": file '" + file + "' is a set of tiles");
         return {};
     }
     if (found.path.empty())
         at.problems.error(written.loc,
-                          "environment: file '" + files.name + "' " +
+                          at.subject + ": file '" + files.name + "' " +
                               (files.missing_frame.empty() ? found.reason : files.missing_frame));
-    if (!found.note.empty()) at.problems.note(written.loc, "environment: " + found.note);
+    if (!found.note.empty()) at.problems.note(written.loc, at.subject + ": " + found.note);
     return found.path;
 }
 
 }  // namespace
+
+const KeySet<ReflectionMapDesc>& reflection_map_keys() {
+    using R = ReflectionMapDesc;
+    static const KeySet<R> keys{
+        {"reflection map",
+         {
+             key("file", &R::file, "Image of all directions, y up; its middle looks along -z.")
+                 .must(),
+             choice("projection", &R::projection, map_projections(),
+                    "How the image shows all directions; automatic: by its shape."),
+             key("scale", &R::scale, "Factor on the image.", kAtLeast0),
+             key("rotate_deg", &R::rotate_deg, "Turn about +y."),
+             key("color_space", &R::color_space,
+                 "Colour space of the image; absent: the working space."),
+             key("position", &R::position, "Where it was taken; with radius or box."),
+             key("radius", &R::radius, "Of the sphere about position whose wall it shows.",
+                 kAbove0),
+             key("box", &R::box, "Two corners of the box whose walls it shows."),
+         }}};
+    return keys;
+}
+
+std::optional<ReflectionMapDesc> read_reflection_map(const Value& value, SceneReader& reader,
+                                                     const ReadContext& at) {
+    ReflectionMapDesc map;
+    map.loc = value.loc;
+    const ReadContext here{at.problems, at.subject + ": reflection_map"};
+    read_keys(value, reflection_map_keys(), map, here);
+    if (map.file.empty()) return std::nullopt;  // reported as missing
+    map.file = find_image(map.file, *value.find("file"), reader, here);
+    const auto wrong = [&](const char* key, const std::string& message) {
+        at.problems.error(value.find(key)->loc, here.subject + ": " + message);
+    };
+    const bool walls = map.radius > 0 || map.box;
+    if (map.radius > 0 && map.box) wrong("box", "radius and box both say where the walls are");
+    if (walls && !value.find("position"))
+        wrong(map.box ? "box" : "radius", "radius and box need a position");
+    if (map.box) {
+        auto& [lo, hi] = *map.box;
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (lo[i] > hi[i]) std::swap(lo[i], hi[i]);
+            if (!(lo[i] < hi[i])) return wrong("box", "the box is flat"), std::nullopt;
+        }
+    }
+    return map;
+}
 
 void read_environment(const Value& table, SceneReader& reader) {
     const ReadContext at{reader.problems, "environment"};
@@ -141,8 +194,12 @@ void read_environment(const Value& table, SceneReader& reader) {
     for (float& channel : environment.radiance) {
         channel = static_cast<float>(std::min(double(channel) * entry.scale, Limits::kLargest));
     }
-    if (!environment.file.empty())
-        environment.file = find_image(environment.file, *table.find("file"), reader, at);
+    for (const auto& [name, file] : {std::pair{"file", &environment.file},
+                                     {"camera", &environment.camera},
+                                     {"lighting", &environment.lighting},
+                                     {"reflection", &environment.reflection}}) {
+        if (!file->empty()) *file = find_image(*file, *table.find(name), reader, at);
+    }
     if (!environment.faces.empty()) {
         const Value& written = *table.find("faces");
         if (environment.faces.size() != 6 || !environment.file.empty()) {

@@ -4,6 +4,7 @@
 #include "renderer/api/openpbr_inputs.h"
 #include "renderer/io/nearest_name.h"
 #include "renderer/io/presets.h"
+#include "renderer/io/scene_environment.h"
 #include "renderer/io/scene_layers.h"
 #include "renderer/io/scene_nodes.h"
 #include "renderer/io/scene_parse.h"
@@ -162,6 +163,17 @@ Key layers_row() {
     return {"layer", form, "Layers on the material, from the lowest up.", store};
 }
 
+Key reflection_map_row() {
+    const auto store = [](void* object, const Value& value, const Key& key, const ReadContext& at) {
+        auto& target = *static_cast<MaterialTarget*>(object);
+        if (!value.table()) return report_misfit(value, key.name, describe(key.form), at);
+        target.material.reflection_map = read_reflection_map(value, target.reader, at);
+    };
+    const Form form{.kind = Form::Kind::table, .tables = {&reflection_map_keys().list}};
+    return {"reflection_map", form,
+            "A map that specular, coat and metal reflect in place of the scene.", store};
+}
+
 std::vector<Key> supported_rows() {
     using M = MaterialDesc;
     std::vector<Key> rows{inherits_row(), nodes_row(), layers_row()};
@@ -175,6 +187,7 @@ std::vector<Key> supported_rows() {
                              {.low = -1000, .high = 1000}));
     rows.push_back(plain_row("use_vertex_color", &M::use_vertex_color,
                              "base_color is multiplied by the mesh's colours."));
+    rows.push_back(reflection_map_row());
     return rows;
 }
 

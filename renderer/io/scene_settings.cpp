@@ -23,8 +23,10 @@ const KeySet<CameraDesc>& camera_rows() {
              key("matrix", &C::matrix,
                  "Camera to world, 3 rows of 4 (x right, y up, looks along -z), instead of "
                  "position, look_at and up."),
-             choice("projection", &C::projection, {"perspective", "orthographic"},
-                    "How depth is drawn."),
+             choice("projection", &C::projection,
+                    {"perspective", "orthographic", "latlong", "cube"},
+                    "How depth is drawn; latlong and cube: all directions around the position, to "
+                    "be an environment's file."),
              key("fov_deg", &C::fov_deg, "Field of view, perspective only.",
                  {.low = 0, .high = 180, .open_low = true, .open_high = true}),
              choice("fov_axis", &C::fov_axis, {"vertical", "horizontal"},
@@ -139,35 +141,51 @@ void check_matrix(const Value& table, const CameraDesc& camera, const ReadContex
     }
 }
 
+// What is written for another projection.
+void note_unused(const Value& table, Projection projection, const ReadContext& at) {
+    struct Row {
+        const char* camera;
+        std::vector<const char*> unused;
+    };
+    static const std::array<Row, 4> rows{{
+        {"a perspective camera", {"ortho_height"}},
+        {"an orthographic camera", {"fov_deg"}},
+        {"a latlong camera", {"fov_deg", "ortho_height", "look_at", "up"}},
+        {"a cube camera", {"fov_deg", "ortho_height", "look_at", "up"}},
+    }};
+    const Row& row = rows[static_cast<std::size_t>(projection)];
+    for (const char* name : row.unused) {
+        if (const Value* found = table.find(name))
+            at.problems.note(found->loc,
+                             std::string("camera: ") + name + " has no effect on " + row.camera);
+    }
+}
+
 void read_camera(const Value& table, SceneReader& reader) {
     const ReadContext at{reader.problems, "camera"};
     CameraDesc& camera = reader.scene.camera;
     camera.loc = table.loc;
     read_keys(table, camera_rows(), camera, at);
-    camera.automatic = !table.find("position") && !table.find("look_at") && !table.find("matrix");
+    const bool map = shows_all_directions(camera.projection);
+    camera.automatic =
+        !table.find("position") && (map || !table.find("look_at")) && !table.find("matrix");
+    if (map) set_map_size(camera.projection, reader.scene.film);
     if (camera.matrix) {
         check_matrix(table, camera, at);
-    } else if (!camera.automatic) {
+    } else if (!map && !camera.automatic) {
         check_view(table, camera, at);
-    } else if (const Value* up = table.find("up")) {
+    } else if (const Value* up = map ? nullptr : table.find("up")) {
         at.problems.warn(up->loc, "camera: up has no effect without position or look_at");
     }
-    const bool perspective = camera.projection == Projection::perspective;
-    for (const char* name : {"fov_deg", "ortho_height"}) {
-        const bool fits = perspective == (name == std::string_view("fov_deg"));
-        const Value* found = table.find(name);
-        if (!found || fits) continue;
-        const std::string kind = perspective ? "perspective" : "orthographic";
-        at.problems.note(found->loc, std::string("camera: ") + name + " has no effect on an " +
-                                         kind + " camera");
-    }
+    note_unused(table, camera.projection, at);
 }
 
 void read_film(const Value& table, SceneReader& reader) {
     const ReadContext at{reader.problems, "film"};
-    FilmEntry entry;
-    read_keys(table, film_rows(), entry, at);
     FilmDesc& film = reader.scene.film;
+    FilmEntry entry;
+    entry.resolution = {film.width, film.height};
+    read_keys(table, film_rows(), entry, at);
     film = entry.film;
     film.loc = table.loc;
     film.width = entry.resolution[0];

@@ -157,6 +157,7 @@ void LightSamples::set(int lane, const LightSample& s) {
     pdf[lane] = s.pdf;
     delta[lane] = s.delta;
     infinite[lane] = s.infinite;
+    surroundings[lane] = s.surroundings;
     material[lane] = s.material;
     placement[lane] = s.placement;
     uv[lane] = s.uv;
@@ -215,6 +216,7 @@ LaneMask DistantLight::sample(LaneMask lanes, const SamplePairs& u, LightSamples
         out.radiance.set(i, all.radiance);
         out.delta[i] = all.delta;
         out.infinite[i] = 1;
+        out.surroundings[i] = 0;
         out.material[i] = -1;
     }
     return lanes;

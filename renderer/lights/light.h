@@ -14,6 +14,7 @@
 #include "renderer/core/ray.h"
 #include "renderer/core/sampler.h"
 #include "renderer/core/vec.h"
+#include "renderer/lights/latlong_map.h"
 
 namespace tessera {
 
@@ -25,8 +26,9 @@ struct LightSample {
     float pdf =
         0;  // per solid angle, the choice of the light included; for delta lights that choice alone
     bool delta = false;
-    bool infinite = false;  // no point: the light is at infinity
-    Vec3f p, p_error, n;    // point on the light, its error bound, its normal (zero for points)
+    bool infinite = false;      // no point: the light is at infinity
+    bool surroundings = false;  // of an environment: specular lobes may see another one
+    Vec3f p, p_error, n;        // point on the light, its error bound, its normal (zero for points)
     std::int32_t material = -1;   // >= 0: radiance comes from this material's emission at uv
     std::uint32_t placement = 0;  // of that mesh
     Vec2f uv;
@@ -37,7 +39,7 @@ struct LightSamples {
     Vec3Lanes wi, p, p_error, n;
     Vec3Lanes radiance;
     float pdf[kLanes];
-    std::uint32_t delta[kLanes], infinite[kLanes];
+    std::uint32_t delta[kLanes], infinite[kLanes], surroundings[kLanes];
     std::int32_t material[kLanes];
     std::uint32_t placement[kLanes];
     Lanes<Vec2f> uv;
@@ -120,14 +122,13 @@ struct MeshLight {
     float density_of(std::int32_t material, Vec3f n) const;
 };
 
-/// A lat-long map or a constant all around.
+/// A lat-long map or a constant all around, which is what surfaces are lit by. Where `camera` or
+/// `reflection` is set, camera rays or the rays of specular lobes see that one in its place.
 struct EnvironmentLight {
-    int width = 0, height = 0;  // 0: constant
-    std::vector<Color> texels;  // row 0 is up (+y)
-    Color scale{1.0f};
-    float cos_rotate = 1, sin_rotate = 0;
+    LatLongMap map;
     Distribution2D table;
     bool camera_visible = true;
+    std::shared_ptr<const LatLongMap> camera, reflection;
 
     struct Look {
         Color radiance{0.0f};
@@ -139,28 +140,8 @@ struct EnvironmentLight {
     /// lanes that got a sample.
     LaneMask sample(LaneMask lanes, const SamplePairs& u, LightSamples& out) const;
     void look(LaneMask lanes, const Vec3Lanes& d, Look (&out)[kLanes]) const;
-    Vec2f to_uv(Vec3f d) const;
-    Vec3f to_direction(Vec2f uv) const;
-    Color texel(Vec2f uv) const;  // bilinear, scaled
     float density(Vec2f uv, float sin_theta) const;
-
-private:
-    // The four texels around a point, and where it lies between them.
-    struct Corners {
-        std::int32_t i00, i01, i10, i11;
-        float tx, ty;
-    };
-    struct CornerLanes {
-        std::int32_t i00[kLanes], i01[kLanes], i10[kLanes], i11[kLanes];
-        float tx[kLanes], ty[kLanes];
-        void set(int i, const Corners& c) {
-            i00[i] = c.i00, i01[i] = c.i01, i10[i] = c.i10, i11[i] = c.i11;
-            tx[i] = c.tx, ty[i] = c.ty;
-        }
-        Corners get(int i) const { return {i00[i], i01[i], i10[i], i11[i], tx[i], ty[i]}; }
-    };
-    Corners corners(Vec2f uv) const;
-    Color blend(const Corners& c) const;
+    std::size_t bytes() const;
 };
 
 using Light = std::variant<PointLight, SpotLight, DistantLight, QuadLight, DiscLight, SphereLight,
@@ -188,6 +169,7 @@ QuadLight make_quad_light(Vec3d corner, Vec3d edge_u, Vec3d edge_v, Color radian
 DistantLight make_distant_light(Vec3f to_light, Color irradiance, double angle_deg,
                                 bool camera_visible);
 EnvironmentLight make_constant_environment(Color radiance, bool camera_visible);
+EnvironmentLight make_environment(LatLongMap map, bool camera_visible);
 /// texels: width x height RGB from the top. Sanitised by the caller.
 EnvironmentLight make_environment(int width, int height, std::vector<Color> texels, Color scale,
                                   double rotate_deg, bool camera_visible);

@@ -36,8 +36,17 @@ EnvironmentLight::Look seen_along(const DistantLight& l, Vec3f d) {
     return {l.radiance, 1.0f / (2.0f * kPi * l.one_minus_cos)};
 }
 
+// What these lanes see is another map's.
+void replace(const LatLongMap& map, LaneMask lanes, const Vec3Lanes& d,
+             EnvironmentLight::Look (&seen)[kLanes]) {
+    for (LaneMask m = lanes; m != 0; m &= m - 1) {
+        const int i = std::countr_zero(m);
+        seen[i].radiance = map.look(d[i]);
+    }
+}
+
 // Over the sphere: rows weigh by their sine.
-Color mean_radiance(const EnvironmentLight& e) {
+Color mean_radiance(const LatLongMap& e) {
     if (e.width == 0) return e.scale;
     Vec3d sum;
     double weight = 0;
@@ -73,8 +82,10 @@ LightSet::LightSet(std::vector<Light> lights, const std::vector<double>& powers)
                            std::holds_alternative<SpotLight>(lights_[i]) ||
                            (distant && distant->one_minus_cos == 0.0f);
         hittable_ |= !delta;
-        if (const auto* e = std::get_if<EnvironmentLight>(&lights_[i]))
-            ambient_ += mean_radiance(*e);
+        if (const auto* e = std::get_if<EnvironmentLight>(&lights_[i])) {
+            if (e->reflection) own_reflection_ = i;
+            ambient_ += mean_radiance(e->map);
+        }
     }
 }
 
@@ -132,8 +143,9 @@ float LightSet::pdf(int index, const LightReference& ref, Vec3f wi, Vec3f p, Vec
     return choice > 0.0f ? choice * light_pdf(lights_[index], ref, wi, p, n, material) : 0.0f;
 }
 
-void LightSet::escaped(LaneMask lanes, const Vec3Lanes& d, const float (&bsdf_pdf)[kLanes],
-                       bool camera, Color (&out)[kLanes]) const noexcept {
+void LightSet::escaped(LaneMask lanes, LaneMask specular, const Vec3Lanes& d,
+                       const float (&bsdf_pdf)[kLanes], bool camera,
+                       Color (&out)[kLanes]) const noexcept {
     for (LaneMask m = lanes; m != 0; m &= m - 1) out[std::countr_zero(m)] = Color(0.0f);
     EnvironmentLight::Look seen[kLanes];
     for (int light : infinite_) {
@@ -141,6 +153,8 @@ void LightSet::escaped(LaneMask lanes, const Vec3Lanes& d, const float (&bsdf_pd
         if (const auto* sky = std::get_if<EnvironmentLight>(&lights_[light])) {
             if (camera && !sky->camera_visible) continue;
             sky->look(lanes, d, seen);
+            if (camera && sky->camera) replace(*sky->camera, lanes, d, seen);
+            if (!camera && sky->reflection) replace(*sky->reflection, lanes & specular, d, seen);
         } else {
             const auto& sun = std::get<DistantLight>(lights_[light]);
             if (camera && !sun.camera_visible) continue;
@@ -160,11 +174,16 @@ void LightSet::escaped(LaneMask lanes, const Vec3Lanes& d, const float (&bsdf_pd
     }
 }
 
+Color LightSet::reflection(Vec3f d) const noexcept {
+    return std::get<EnvironmentLight>(lights_[own_reflection_]).reflection->look(d);
+}
+
 Color LightSet::background(Vec3f d, bool camera) const noexcept {
     Color sum(0.0f);
     for (int light : infinite_) {
         if (const auto* sky = std::get_if<EnvironmentLight>(&lights_[light])) {
-            if (!camera || sky->camera_visible) sum += sky->look(d).radiance;
+            const LatLongMap* own = (camera ? sky->camera : sky->reflection).get();
+            if (!camera || sky->camera_visible) sum += (own ? *own : sky->map).look(d);
         } else {
             const auto& sun = std::get<DistantLight>(lights_[light]);
             if (!camera || sun.camera_visible) sum += seen_along(sun, d).radiance;
@@ -177,8 +196,7 @@ std::size_t LightSet::bytes() const noexcept {
     std::size_t sum = lights_.capacity() * sizeof(Light) + choice_.bytes();
     std::set<const EmissiveFaces*> shared;
     for (const Light& light : lights_) {
-        if (const auto* e = std::get_if<EnvironmentLight>(&light))
-            sum += e->texels.capacity() * sizeof(Color) + e->table.bytes();
+        if (const auto* e = std::get_if<EnvironmentLight>(&light)) sum += e->bytes();
         if (const auto* m = std::get_if<MeshLight>(&light)) shared.insert(m->faces.get());
     }
     for (const EmissiveFaces* faces : shared) sum += faces->bytes();
@@ -209,9 +227,9 @@ double light_power(const Light& light, double scene_radius, double mesh_emission
         double operator()(const MeshLight&) const { return 2 * kPiD * mesh_emission; }
         double operator()(const EnvironmentLight& l) const {
             // A constant sky is found best by the rays that surfaces send anyway.
-            if (l.width == 0) return 0;
+            if (l.map.width == 0) return 0;
             // The table's weights carry the sine; their mean over the sphere is mean * pi / 2.
-            const double radiance = l.table.mean() * kPiD / 2 * mean_of(l.scale);
+            const double radiance = l.table.mean() * kPiD / 2 * mean_of(l.map.scale);
             return kPiD * disc * radiance;
         }
     };

@@ -33,9 +33,13 @@ public:
 
     /// Light from infinity along d, for rays that hit nothing. bsdf_pdf: density that made the ray,
     /// 0 if light sampling could not have made it (camera, delta): the result is weighted by the
-    /// power heuristic.
-    void escaped(LaneMask lanes, const Vec3Lanes& d, const float (&bsdf_pdf)[kLanes], bool camera,
-                 Color (&out)[kLanes]) const noexcept;
+    /// power heuristic. camera: all are camera rays; specular: lanes whose ray a specular lobe
+    /// sent.
+    void escaped(LaneMask lanes, LaneMask specular, const Vec3Lanes& d,
+                 const float (&bsdf_pdf)[kLanes], bool camera, Color (&out)[kLanes]) const noexcept;
+    /// Whether specular lobes see surroundings of their own, and what they see of them along d.
+    bool own_reflection() const noexcept { return own_reflection_ >= 0; }
+    Color reflection(Vec3f d) const noexcept;
     /// One ray, unweighted, for the ray tree.
     Color background(Vec3f d, bool camera) const noexcept;
 
@@ -52,6 +56,7 @@ private:
     AliasTable choice_;
     int sampled_ = 0;  // lights of positive power
     bool hittable_ = false;
+    int own_reflection_ = -1;  // the light that has them
     Color ambient_{0.0f};
     std::vector<int> infinite_;  // lights that an escaping ray may see
 };

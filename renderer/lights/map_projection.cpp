@@ -196,22 +196,4 @@ std::span<const MapProjection> guess_projection(int width, int height) noexcept 
     return width > 0 && width == height ? all.subspan(4, 2) : all.subspan(0, 0);
 }
 
-Vec3f cross_direction(Vec2f uv) noexcept {
-    const float x = 4.0f * uv.x, y = 3.0f * uv.y;
-    const float column = std::min(std::floor(x), 3.0f), row = std::min(std::floor(y), 2.0f);
-    const float s = 2.0f * (x - column) - 1.0f, down = 2.0f * (y - row) - 1.0f;
-    Vec3f d;
-    if (row == 1.0f) {
-        d = column == 0.0f   ? Vec3f{-1.0f, -down, -s}
-            : column == 1.0f ? Vec3f{s, -down, -1.0f}
-            : column == 2.0f ? Vec3f{1.0f, -down, s}
-                             : Vec3f{-s, -down, 1.0f};
-    } else if (column == 1.0f && (row == 0.0f || row == 2.0f)) {
-        d = row == 0.0f ? Vec3f{s, 1.0f, -down} : Vec3f{s, -1.0f, down};
-    } else {
-        return {};
-    }
-    return normalize(d);
-}
-
 }  // namespace tessera

@@ -90,7 +90,4 @@ inline Vec3f latlong_direction(Vec2f uv) {
     return {-theta.sin * phi.sin, theta.cos, theta.sin * phi.cos};
 }
 
-/// map_direction for cameras: horizontal cross, in float; zero off the cross.
-Vec3f cross_direction(Vec2f uv) noexcept;
-
 }  // namespace tessera

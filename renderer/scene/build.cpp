@@ -16,6 +16,7 @@
 #include "renderer/scene/emitters.h"
 #include "renderer/scene/flatten.h"
 #include "renderer/scene/hash.h"
+#include "renderer/scene/map_file.h"
 #include "renderer/scene/opacity.h"
 #include "renderer/scene/placement.h"
 
@@ -39,10 +40,15 @@ public:
         place_origin();
         place_shapes();
         make_lights();
-        if (desc_.camera.projection == Projection::orthographic && desc_.camera.aperture_radius > 0)
-            problems_.warn(
-                desc_.camera.loc,
-                "camera: an orthographic camera has no lens, aperture_radius is not used");
+        if (desc_.camera.projection != Projection::perspective && desc_.camera.aperture_radius > 0)
+            problems_.warn(desc_.camera.loc,
+                           "camera: only a perspective camera has a lens, aperture_radius is not "
+                           "used");
+        if (desc_.camera.projection == Projection::latlong &&
+            desc_.film.width != 2 * std::int64_t{desc_.film.height})
+            problems_.note(desc_.camera.loc,
+                           "camera: a latlong picture that is not 2:1 is no map that can be told "
+                           "by its shape");
         scene_->camera_ = Camera(desc_.camera, desc_.film.width, desc_.film.height, scene_->origin_,
                                  scene_->bounds_min_, scene_->bounds_max_);
         problems_.throw_if_any();
@@ -107,8 +113,7 @@ private:
     }
 
     bool has_environment_image() const {
-        return desc_.environment &&
-               (!desc_.environment->file.empty() || !desc_.environment->faces.empty());
+        return desc_.environment && has_image(*desc_.environment);
     }
 
     int default_material() const { return static_cast<int>(desc_.materials.size()) - 1; }
@@ -294,6 +299,7 @@ private:
                         nullptr,
                         problems_};
         if (desc_.sky || has_environment_image()) in.colors = &colors();
+        read_reflection_maps();
         scene_->lights_ = make_emitters(in, scene_->geometry_);
         scene_->emission_can_be_hit_ = scene_->lights_.hittable();
         for (std::size_t i = 0; i < used_.size(); ++i) {
@@ -301,8 +307,18 @@ private:
         }
     }
 
+    void read_reflection_maps() {
+        auto& maps = scene_->reflection_maps_;
+        for (std::size_t i = 0; i < used_.size(); ++i) {
+            if (!used_[i] || !desc_.materials[i].reflection_map) continue;
+            maps.resize(used_.size());
+            maps[i] = make_reflection_map(desc_.materials[i], scene_->origin_, colors(), problems_);
+        }
+    }
+
     void choose_kernel() {
         Features& f = scene_->features_;
+        f.apart = !scene_->reflection_maps_.empty() || scene_->lights_.own_reflection();
         for (std::size_t i = 0; i < scene_->programs_.size(); ++i) {
             if (!used_[i] || (static_cast<int>(i) == default_material() && !default_used()))
                 continue;
@@ -393,6 +409,7 @@ private:
         s.texture_limit = static_cast<std::uint64_t>(options_.texture_memory);
         count_textures(*scene_, s);
         s.memory_lights = scene_->lights_.bytes();
+        for (const auto& map : scene_->reflection_maps_) s.memory_lights += map ? map->bytes() : 0;
         s.lights = static_cast<std::uint64_t>(scene_->lights_.size());
         if (bake_report_.degenerate > 0) {
             problems_.note({},
@@ -432,6 +449,7 @@ private:
         leave(!f.instances, "instance transforms",
               "every shape stands once and was moved into place");
         leave(!f.lens, "lens", "the aperture is zero");
+        leave(!f.apart, "reflection maps", "what mirrors shows the scene itself");
         bool cutout = false;
         for (const Mesh& m : scene_->geometry_.meshes) {
             for (const MeshPart& p : m.parts) cutout |= p.cutout;

@@ -2,8 +2,11 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "renderer/core/affine.h"
 #include "renderer/core/warp.h"
+#include "renderer/lights/map_projection.h"
 
 namespace tessera {
 namespace {
@@ -57,7 +60,14 @@ Placed frame_bounds(Vec3d lo, Vec3d hi, double tan_x, double tan_y, bool orthogr
 
 Camera::Camera(const CameraDesc& desc, int width, int height, Vec3d origin, Vec3d bounds_min,
                Vec3d bounds_max) {
-    orthographic_ = desc.projection == Projection::orthographic;
+    projection_ = desc.projection;
+    to_x_ = static_cast<float>(2.0 / width);
+    to_y_ = static_cast<float>(2.0 / height);
+    if (shows_all_directions(projection_)) {
+        place_all_around(desc, width, height, origin, (bounds_min + bounds_max) * 0.5);
+        return;
+    }
+    const bool orthographic = projection_ == Projection::orthographic;
     const double aspect = static_cast<double>(width) / height;
     const double tan_asked = std::tan(0.5 * desc.fov_deg * kPiD / 180);
     const double tan_v = desc.fov_axis == FovAxis::vertical ? tan_asked : tan_asked / aspect;
@@ -71,20 +81,18 @@ Camera::Camera(const CameraDesc& desc, int width, int height, Vec3d origin, Vec3
         }
         c = {m.p - origin, normalize(m.x), normalize(m.y), normalize(-m.z), 0};
     } else if (desc.automatic) {
-        c = frame_bounds(bounds_min, bounds_max, tan_v * aspect, tan_v, orthographic_);
-        if (orthographic_)
+        c = frame_bounds(bounds_min, bounds_max, tan_v * aspect, tan_v, orthographic);
+        if (orthographic)
             half_height = 0.5 * length(bounds_max - bounds_min) / std::min(1.0, aspect);
     } else {
         c = look_at(Vec3d(desc.position) - origin, Vec3d(desc.look_at) - origin, Vec3d(desc.up),
                     desc.loc);
     }
-    if (!orthographic_) half_height = tan_v;
+    if (!orthographic) half_height = tan_v;
     position_ = Vec3f(c.position);
     forward_ = Vec3f(c.forward);
     right_ = Vec3f(c.right * (half_height * aspect));
     up_ = Vec3f(c.up * half_height);
-    to_x_ = static_cast<float>(2.0 / width);
-    to_y_ = static_cast<float>(2.0 / height);
     aperture_ = static_cast<float>(desc.aperture_radius);
     const double focus = desc.focus_distance > 0 ? desc.focus_distance : c.to_target;
     if (aperture_ > 0.0f && !(focus > 0)) {
@@ -95,23 +103,63 @@ Camera::Camera(const CameraDesc& desc, int width, int height, Vec3d origin, Vec3
     lens_right_ = Vec3f(c.right * static_cast<double>(aperture_));
     lens_up_ = Vec3f(c.up * static_cast<double>(aperture_));
     const double pixel = 2 * half_height / height;
-    (orthographic_ ? footprint_ : spread_) = static_cast<float>(pixel);
+    (orthographic ? footprint_ : spread_) = static_cast<float>(pixel);
     // The circle of confusion is the footprint that textures need.
-    if (has_lens() && !orthographic_) footprint_ = 0.2f * aperture_;
+    if (has_lens() && !orthographic) footprint_ = 0.2f * aperture_;
 }
 
-void Camera::rays(const SamplePairs& film, const SamplePairs& lens, RayPacket& out) const noexcept {
+// The lens has no say, and where the camera looks has none either: the map's axes are the world's.
+void Camera::place_all_around(const CameraDesc& desc, int width, int height, Vec3d origin,
+                              Vec3d center) {
+    if (projection_ == Projection::cube && width != 6 * std::int64_t{height}) {
+        throw Error(ExitCode::scene, desc.loc,
+                    fmt::format("camera: a cube is six squares side by side, the resolution is "
+                                "{}x{}, must be 6:1",
+                                width, height));
+    }
+    position_ = Vec3f(center);
+    if (desc.matrix) {
+        position_ = Vec3f(affine_from_rows(*desc.matrix).p - origin);
+    } else if (!desc.automatic) {
+        position_ = Vec3f(Vec3d(desc.position) - origin);
+    }
+    face_px_ = height;
+    spread_ = static_cast<float>((projection_ == Projection::cube ? 2 : kPiD) / height);
+}
+
+// A pixel's samples beyond an edge of its face go on in the face's plane: the strip's neighbours
+// are not the cube's.
+void Camera::all_around(const SamplePairs& film, int x, RayPacket& out) const noexcept {
+    for (int i = 0; i < kLanes; ++i) {
+        Vec3f d;
+        if (projection_ == Projection::latlong) {
+            d = latlong_direction({0.5f * to_x_ * film.x[i], 0.5f * to_y_ * film.y[i]});
+        } else {
+            const int number = std::min((x + (i & 3)) / face_px_, 5);
+            const FaceFrame& face = face_frame(CubeFaces::opengl, number);
+            const float column = film.x[i] - static_cast<float>(number * face_px_);
+            d = normalize(Vec3f(face.forward) + Vec3f(face.right) * (column * to_y_ - 1.0f) +
+                          Vec3f(face.down) * (film.y[i] * to_y_ - 1.0f));
+        }
+        out.set(i, {position_, d, kInfinity, kCameraRays});
+    }
+}
+
+void Camera::rays(const SamplePairs& film, const SamplePairs& lens, int x,
+                  RayPacket& out) const noexcept {
+    if (shows_all_directions(projection_)) return all_around(film, x, out);
+    const bool orthographic = projection_ == Projection::orthographic;
     // One loop per kind of camera: each is vectorised.
     for (int i = 0; i < kLanes; ++i) {
         const Vec3f across = right_ * (film.x[i] * to_x_ - 1.0f) + up_ * (1.0f - film.y[i] * to_y_);
-        const Vec3f o = orthographic_ ? position_ + across : position_;
-        const Vec3f d = orthographic_ ? forward_ : normalize(forward_ + across);
+        const Vec3f o = orthographic ? position_ + across : position_;
+        const Vec3f d = orthographic ? forward_ : normalize(forward_ + across);
         out.ox[i] = o.x, out.oy[i] = o.y, out.oz[i] = o.z;
         out.dx[i] = d.x, out.dy[i] = d.y, out.dz[i] = d.z;
         out.t_min[i] = 0.0f, out.t_max[i] = kInfinity, out.time[i] = 0.0f;
         out.mask[i] = kCameraRays, out.id[i] = static_cast<std::uint32_t>(i), out.flags[i] = 0;
     }
-    if (!has_lens() || orthographic_) return;
+    if (!has_lens() || orthographic) return;
     for (int i = 0; i < kLanes; ++i) {
         const Vec3f through =
             forward_ + right_ * (film.x[i] * to_x_ - 1.0f) + up_ * (1.0f - film.y[i] * to_y_);

@@ -16,6 +16,7 @@ struct Features {
     bool quadrics = false;  // spheres or discs
     bool instances = false;
     bool lens = false;
+    bool apart = false;  // specular lobes may see surroundings of their own
 
     constexpr bool operator==(const Features&) const = default;
     /// True if a kernel with these features can render a scene that needs `other`.
@@ -23,7 +24,7 @@ struct Features {
         return (specular || !other.specular) && (layers || !other.layers) &&
                (transmission || !other.transmission) && (textures || !other.textures) &&
                (vertex_colors || !other.vertex_colors) && (quadrics || !other.quadrics) &&
-               (instances || !other.instances) && (lens || !other.lens);
+               (instances || !other.instances) && (lens || !other.lens) && (apart || !other.apart);
     }
 };
 
@@ -43,7 +44,8 @@ inline constexpr Features kFull{.specular = true,
                                 .vertex_colors = true,
                                 .quadrics = true,
                                 .instances = true,
-                                .lens = true};
+                                .lens = true,
+                                .apart = true};
 inline constexpr std::array<KernelRow, 3> kKernels{
     {{"basic", kBasic}, {"surface", kSurface}, {"full", kFull}}};
 

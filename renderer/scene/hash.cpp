@@ -64,7 +64,12 @@ public:
         (*this)(m.name);
         visit_openpbr([&](auto member, const OpenPbrInput&) { (*this)(m.*member); });
         all(m.geometry_thin_walled, m.geometry_normal, m.geometry_coat_normal, m.geometry_tangent,
-            m.geometry_coat_tangent, m.nodes, m.dielectric_priority, m.use_vertex_color);
+            m.geometry_coat_tangent, m.nodes, m.dielectric_priority, m.use_vertex_color,
+            m.reflection_map);
+    }
+    void operator()(const ReflectionMapDesc& r) {
+        all(r.file, r.projection, r.color_space, r.scale, r.rotate_deg, r.position, r.radius,
+            r.box);
     }
     void operator()(const MeshDesc& m) {
         all(m.positions, m.normals, m.uvs, m.colors, m.triangles, m.quads, m.position_index,
@@ -90,7 +95,8 @@ public:
         std::visit([&](const auto& s) { (*this)(s); }, l.shape);
     }
     void operator()(const EnvironmentDesc& e) {
-        all(e.file, e.faces, e.projection, e.color_space, e.radiance, e.rotate_deg, e.visible);
+        all(e.file, e.faces, e.camera, e.lighting, e.reflection, e.projection, e.color_space,
+            e.radiance, e.rotate_deg, e.visible);
     }
     void operator()(const SkyDesc::PlaceAndTime& t) {
         all(t.latitude_deg, t.longitude_deg, t.year, t.month, t.day, t.hour);

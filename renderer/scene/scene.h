@@ -11,6 +11,7 @@
 #include "renderer/geometry/interpolate.h"
 #include "renderer/image/colour_space.h"
 #include "renderer/lights/light_set.h"
+#include "renderer/lights/reflection_map.h"
 #include "renderer/scene/camera.h"
 #include "renderer/scene/features.h"
 
@@ -23,6 +24,10 @@ public:
     const Camera& camera() const noexcept { return camera_; }
     const LightSet& lights() const noexcept { return lights_; }
     const ShaderProgram& program(int material) const noexcept { return programs_[material]; }
+    /// What a material mirrors in place of the scene; null: nothing.
+    const ReflectionMap* reflection_map(int material) const noexcept {
+        return reflection_maps_.empty() ? nullptr : reflection_maps_[material].get();
+    }
     const TextureStore* textures() const noexcept { return textures_.get(); }
     /// Whether a ray can run into something that shines.
     bool emission_can_be_hit() const noexcept { return emission_can_be_hit_; }
@@ -43,6 +48,7 @@ private:
     friend class SceneBuilder;
     Geometry geometry_;
     std::vector<ShaderProgram> programs_;
+    std::vector<std::shared_ptr<const ReflectionMap>> reflection_maps_;  // by material, or none
     std::unique_ptr<ColorSpaces> colors_;
     std::unique_ptr<TextureStore> textures_;
     LightSet lights_;

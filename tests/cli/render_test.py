@@ -101,6 +101,20 @@ class Options(TesseraTest):
     def test_resolution(self):
         self.assertEqual(self.render("--res", "20x12").size, (20, 12))
 
+    def test_maps_of_all_directions(self):
+        here = ("--camera-position", "1,0.5,1")
+        self.assertEqual(self.render("--camera", "cube", "--spp", "1").size, (1536, 256))
+        latlong = self.render("--camera", "latlong", "--spp", "1", *here)
+        self.assertEqual(latlong.size, (1024, 512))
+        # The lowest row looks down to the floor.
+        self.assertAlmostEqual(latlong.value("Z", 300, 511), 0.5, delta=1e-3)
+        self.assertAlmostEqual(latlong.value("P.X", 300, 511), 1, delta=0.02)
+        self.assertEqual(self.render("--camera", "latlong", "--res", "32x16", "--spp", "1").size, (32, 16))
+        by_key = self.render("--set", "camera.projection=latlong", "--set", "camera.position=[1, 0.5, 1]", "--res", "32x16")
+        self.assert_same_bits(by_key, self.render("--camera", "latlong", "--res", "32x16", *here, output="b.exr"))
+        run = self.expect(3, "render", "scene.toml", "-o", "no.exr", "--camera", "cube", "--res", "64x48")
+        self.assertIn("must be 6:1", run.err)
+
     def test_one_pixel(self):
         self.assertEqual(self.render("--res", "1x1").size, (1, 1))
 
@@ -137,7 +151,7 @@ class Options(TesseraTest):
             resolution = [8, 8]
             """)
         done = self.expect(0, "render", "s.toml", "-o", "s.exr", "--spp", "1")
-        self.assertIn("s.toml:2:1: camera: an orthographic camera has no lens", done.err)
+        self.assertIn("s.toml:2:1: camera: only a perspective camera has a lens", done.err)
         self.assertIn("the scene has no shapes", done.err)
 
     def test_scene_and_output_may_lie_in_other_folders(self):

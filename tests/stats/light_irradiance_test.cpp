@@ -169,14 +169,14 @@ TEST_CASE("environment: irradiance is the integral of its look-ups") {
 TEST_CASE("environment: u = 0.5 looks along -z, v = 0 up, and the map turns about +y") {
     EnvironmentLight e =
         make_environment(8, 4, std::vector<Color>(32, Color(1.0f)), Color(1.0f), 0, true);
-    CHECK(length(e.to_direction({0.5f, 0.5f}) - Vec3f{0, 0, -1}) < 1e-6f);
-    CHECK(length(e.to_direction({0.75f, 0.5f}) - Vec3f{1, 0, 0}) < 1e-6f);
-    CHECK(length(e.to_direction({0.3f, 0.0f}) - Vec3f{0, 1, 0}) < 1e-6f);
+    CHECK(length(e.map.to_direction({0.5f, 0.5f}) - Vec3f{0, 0, -1}) < 1e-6f);
+    CHECK(length(e.map.to_direction({0.75f, 0.5f}) - Vec3f{1, 0, 0}) < 1e-6f);
+    CHECK(length(e.map.to_direction({0.3f, 0.0f}) - Vec3f{0, 1, 0}) < 1e-6f);
     e = make_environment(8, 4, std::vector<Color>(32, Color(1.0f)), Color(1.0f), 30, true);
     Random n(1);
     for (int i = 0; i < 1000; ++i) {
         const Vec2f uv{n.between(0.01f, 0.99f), n.between(0.01f, 0.99f)};
-        const Vec2f back = e.to_uv(e.to_direction(uv));
+        const Vec2f back = e.map.to_uv(e.map.to_direction(uv));
         CHECK(std::fabs(back.x - uv.x) < 1e-4f);
         CHECK(std::fabs(back.y - uv.y) < 1e-5f);
     }

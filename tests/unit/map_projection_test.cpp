@@ -173,17 +173,12 @@ TEST_CASE("map projection: nothing is shown outside") {
 
 TEST_CASE("map projection: a camera's rays in float are those of the map") {
     Random random(3);
-    int off = 0;
     for (int i = 0; i < 20000; ++i) {
         const Vec2f u = random.pair();
         const MapPoint p{double{u.x}, double{u.y}};
         // Float: 24 bits of u turned into up to 2 pi.
         REQUIRE(apart(Vec3d(latlong_direction(u)), *map_direction(latlong, p)) < 2e-6);
-        const auto d = map_direction(cube_cross_horizontal, p);
-        REQUIRE(apart(Vec3d(cross_direction(u)), d.value_or(Vec3d{})) < 2e-6);
-        off += !d;
     }
-    CHECK(off > 9000);
 }
 
 TEST_CASE("map projection: the environment light reads a lat-long map in the same frame") {
@@ -193,7 +188,7 @@ TEST_CASE("map projection: the environment light reads a lat-long map in the sam
     for (int i = 0; i < 1000; ++i) {
         const Vec3d d = random.direction();
         const MapPoint p = map_point(latlong, d);
-        const Vec2f uv = light.to_uv(Vec3f(d));
+        const Vec2f uv = light.map.to_uv(Vec3f(d));
         REQUIRE(std::abs(p.x - double{uv.x}) < 1e-5);
         REQUIRE(std::abs(p.y - double{uv.y}) < 1e-6);
     }
