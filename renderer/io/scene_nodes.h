@@ -27,8 +27,8 @@ public:
                                   const ReadContext& at);
 
     /// What an input holds now, as something a node can take.
-    NodeValue node_of(const ColorInput& input);
-    NodeValue node_of(const FloatInput& input);
+    NodeValue node_of(const ColorInput& input, NodeType type);
+    NodeValue node_of(const FloatInput& input, NodeType type);
     /// value times a number.
     NodeValue product(NodeValue value, float factor, const SourceLoc& loc);
     /// `above` on `below` by a mask and a blend mode.
