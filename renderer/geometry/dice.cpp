@@ -195,9 +195,20 @@ private:
             for (int i = 1; i < nu; ++i)
                 add_inside(patch, static_cast<float>(i) / static_cast<float>(nu),
                            static_cast<float>(j) / static_cast<float>(nv));
-        for (int j = 1; j + 1 < nv; ++j)
-            for (int i = 1; i + 1 < nu; ++i)
-                quad(inside(i, j), inside(i + 1, j), inside(i + 1, j + 1), inside(i, j + 1));
+        // Where opposite sides are cut alike, the whole is one grid.
+        const bool even = pieces(0) == pieces(2) && pieces(1) == pieces(3);
+        const auto at = [&](int i, int j) {
+            if (j == 0) return ring[0][static_cast<std::size_t>(i)];
+            if (i == nu) return ring[1][static_cast<std::size_t>(j)];
+            if (j == nv) return ring[2][static_cast<std::size_t>(nu - i)];
+            if (i == 0) return ring[3][static_cast<std::size_t>(nv - j)];
+            return inside(i, j);
+        };
+        const int rim = even ? 0 : 1;
+        for (int j = rim; j + rim < nv; ++j)
+            for (int i = rim; i + rim < nu; ++i)
+                quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+        if (even) return;
         Chain inner[4];
         for (int i = 1; i < nu; ++i) {
             inner[0].push_back(inside(i, 1));
