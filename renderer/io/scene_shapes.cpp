@@ -181,6 +181,8 @@ void load_meshes(const Value& document, SceneReader& reader, ShapeNames& names) 
         int index = -1;
         if (!entry.file.empty())
             index = loader.load(entry.file, entry.subdivision, table.find("file")->loc, at);
+        if (index >= 0 && entry.subdivision.scheme != Subdivision::none)
+            reader.scene.meshes[static_cast<std::size_t>(index)].name = entry.common.name;
         add_named(table, entry.common, {ShapeKind::mesh, index}, named, at, names);
     }
 }

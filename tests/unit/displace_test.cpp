@@ -242,6 +242,26 @@ TEST_CASE("displace: seams, unequal rates and charts that disagree leave no crac
     CHECK(open_edges(made(triangles).mesh()) == 0);
 }
 
+TEST_CASE("displace: no light comes out of a closed displaced body") {
+    SceneDesc s =
+        scene_of(subdivided(sphere_cage(3), 0, Subdivision::catmull_clark, 0), noisy(0.3f));
+    s.meshes[0].subdivision.edge_length_px = 5;
+    PointLightDesc light;
+    light.intensity = {1000, 1000, 1000};
+    add_light(s, light);
+    look(s, {0.3, 0.4, 3}, {0, 0, 0});
+    set_film(s, 128, 128, 16);
+    const std::vector<float> picture = beauty_of(s);
+    int seen = 0;
+    float out = 0;
+    for (std::size_t i = 0; i < picture.size(); i += 4) {
+        out = std::max(out, picture[i]);
+        seen += picture[i + 3] == 1.0f;
+    }
+    CHECK(seen > 4000);
+    CHECK(out == 0.0f);
+}
+
 TEST_CASE("displace: the same bits for any number of threads") {
     const SceneDesc s =
         scene_of(subdivided(sphere_cage(4), 0, Subdivision::catmull_clark, 24), noisy(0.3f));
