@@ -80,17 +80,31 @@ struct LimitSurface::Impl {
         check();
     }
 
+    // An entry that more faces share than can be evaluated: each gets its own.
+    void split_uvs() {
+        std::vector<std::uint32_t> faces(uvs.size() / 2, 0);
+        for (const std::uint32_t i : uv_index) ++faces[i];
+        for (std::uint32_t& i : uv_index) {
+            if (faces[i] <= kMaxValence) continue;
+            uvs.insert(uvs.end(), {uvs[2 * std::size_t(i)], uvs[2 * std::size_t(i) + 1]});
+            i = static_cast<std::uint32_t>(uvs.size() / 2) - 1;
+            faces.push_back(0);
+        }
+    }
+
     // Smooth inside of a chart, its outline kept straight: charts meet as they did on the cage.
     void add_uvs(const MeshDesc& mesh, const Cage& cage) {
         for (const std::uint32_t corner : cage.source) uv_index.push_back(uv_entry(mesh, corner));
         uvs = mesh.uvs;
+        split_uvs();
+        const std::size_t count = uvs.size() / 2;
         uvs.insert(uvs.end(), {0.0f, 0.0f});
         rtcSetGeometryTopologyCount(geometry, 2);
         rtcSetGeometryVertexAttributeCount(geometry, 1);
         buffer(RTC_BUFFER_TYPE_INDEX, 1, RTC_FORMAT_UINT, uv_index.data(), sizeof(std::uint32_t),
                uv_index.size());
         buffer(RTC_BUFFER_TYPE_VERTEX_ATTRIBUTE, 0, RTC_FORMAT_FLOAT2, uvs.data(),
-               2 * sizeof(float), mesh.uvs.size() / 2);
+               2 * sizeof(float), count);
         rtcSetGeometryVertexAttributeTopology(geometry, 0, 1);
         rtcSetGeometrySubdivisionMode(geometry, 1, RTC_SUBDIVISION_MODE_PIN_BOUNDARY);
     }

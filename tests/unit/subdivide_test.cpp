@@ -8,6 +8,7 @@
 #include <map>
 
 #include "tests/support/cages.h"
+#include "tests/support/random.h"
 
 using namespace tessera;
 
@@ -218,6 +219,50 @@ TEST_CASE("subdivide: a flat sheet stays flat, its outline as the boundary's rul
     CHECK(corner_x(SubdivisionBoundary::pin) == doctest::Approx(-0.5));
     // The corner of a closed cubic B-spline: (1, 4, 1) / 6 of itself and its neighbours.
     CHECK(corner_x(SubdivisionBoundary::smooth) == doctest::Approx(-0.5 + 1.0 / 6));
+}
+
+TEST_CASE("subdivide: texture coordinates that a hundred faces share are evaluated") {
+    // A ring whose lower rim has one texture coordinate.
+    constexpr std::uint32_t kFaces = 100;
+    std::vector<Double3> points;
+    std::vector<std::vector<std::uint32_t>> faces;
+    for (std::uint32_t i = 0; i < kFaces; ++i) {
+        const double a = 2 * 3.14159265358979 * i / kFaces;
+        for (const double y : {0.0, 1.0}) points.push_back({std::cos(a), y, std::sin(a)});
+        const std::uint32_t b = (i + 1) % kFaces;
+        faces.push_back({2 * i, 2 * i + 1, 2 * b + 1, 2 * b});
+    }
+    MeshDesc mesh = smooth(mesh_of(points, faces));
+    for (std::uint32_t i = 0; i < 2 * kFaces; ++i)
+        mesh.uvs.insert(mesh.uvs.end(),
+                        {i % 2 ? static_cast<float>(i) / (2 * kFaces) : 0.5f, i % 2 ? 1.0f : 0.0f});
+    for (const std::uint32_t i : mesh.position_index) mesh.uv_index.push_back(i % 2 ? i : 0);
+    const Cage cage = make_cage(mesh, false);
+    const LimitSurface surface(mesh, cage, 1, "");
+    for (std::uint32_t f = 0; f < kFaces; ++f) {
+        CHECK(surface.at({f, 0, 0, 0}).uv == Vec2f{0.5f, 0.0f});
+        CHECK(surface.at({f, 0, 1, 1}).uv.y == doctest::Approx(1));
+    }
+}
+
+TEST_CASE("subdivide: a soup of faces without order is evaluated, each in its place") {
+    for (std::uint32_t seed = 0; seed < 60; ++seed) {
+        Random random(seed);
+        std::vector<Double3> points(12);
+        for (Double3& p : points)
+            for (double& x : p) x = static_cast<double>(random.between(-1, 1));
+        std::vector<std::vector<std::uint32_t>> faces(10);
+        for (auto& f : faces)
+            for (int k = 0; k < (random.unit() < 0.5f ? 3 : 4); ++k)
+                f.push_back(static_cast<std::uint32_t>(random.between(0, 11.9f)));
+        std::erase_if(faces, [](const auto& f) { return f.size() < 3; });
+        const MeshDesc mesh = smooth(mesh_of(points, faces));
+        const Cage cage = make_cage(mesh, false);
+        if (cage.faces.empty()) continue;
+        const LimitSurface surface(mesh, cage, 1, "");
+        const Diced d = dice(cage, std::vector<int>(cage.edges.size(), 4));
+        for (const DiceSite& site : d.sites) CHECK(max_component(abs(surface.at(site).p)) < 2.5f);
+    }
 }
 
 TEST_CASE("subdivide: a linear cage keeps its points, its normals and its texture coordinates") {
