@@ -2,10 +2,15 @@
 
 #include <cmath>
 
+#include "materials/nodes/edge_wear.h"
+#include "materials/relief.h"
 #include "renderer/core/sampler.h"
 
 namespace tessera {
 namespace {
+
+// Flatter creases are those of a rounding, which is to be left alone.
+constexpr float kLeastCrease_deg = 2.0f;
 
 bool reads_point(NodeOp op) {
     switch (op) {
@@ -17,6 +22,10 @@ bool reads_point(NodeOp op) {
         case NodeOp::random:
         case NodeOp::image:
         case NodeOp::triplanar:
+        case NodeOp::tangent:
+        case NodeOp::normalmap:
+        case NodeOp::bump:
+        case NodeOp::edgewear:
             return true;
         default:
             return false;
@@ -40,7 +49,7 @@ Vec3f output_of(const NodeResult& r, int output) {
 
 }  // namespace
 
-// An input for a place that is given none takes the surface's own.
+// An input for a place or normal that is given none takes the surface's own.
 Wire Graph::wire_of(const std::vector<NodeDesc>& nodes, const NodeDesc& desc, std::size_t input) {
     const NodeInputInfo& info = kNodes[static_cast<std::size_t>(desc.type)].inputs()[input];
     if (desc.given[input]) {
@@ -48,11 +57,12 @@ Wire Graph::wire_of(const std::vector<NodeDesc>& nodes, const NodeDesc& desc, st
         if (v.node >= 0) return add(nodes, v.node, v.output);
         return {-1, 0, Vec3f(v.value)};
     }
-    const bool place = info.name == "texcoord", position = info.name == "position";
-    if (place || position) {
+    for (const NodeOp op : {NodeOp::texcoord, NodeOp::position, NodeOp::normal}) {
+        const NodeInfo& of_surface = kNodes[static_cast<std::size_t>(op)];
+        if (info.name != of_surface.name) continue;
         Op own;
-        own.op = place ? NodeOp::texcoord : NodeOp::position;
-        own.inputs = place ? 0 : 1;
+        own.op = op;
+        own.inputs = static_cast<std::uint8_t>(of_surface.inputs().size());
         return add_op(desc, own);
     }
     const auto& i = info.initial;
@@ -108,8 +118,15 @@ Wire Graph::add_op(const NodeDesc& desc, const Op& op) {
     reads_uv_ |= op.op == NodeOp::texcoord || op.op == NodeOp::image;
     reads_geometry_ |= op.op == NodeOp::position || op.op == NodeOp::normal ||
                        op.op == NodeOp::facingratio || op.op == NodeOp::random ||
-                       op.op == NodeOp::triplanar;
+                       op.op == NodeOp::triplanar || op.op == NodeOp::bump ||
+                       op.op == NodeOp::edgewear;
+    reads_tangent_ |=
+        op.op == NodeOp::tangent || op.op == NodeOp::normalmap || op.op == NodeOp::bump;
     reads_color_ |= op.op == NodeOp::geomcolor;
+    if (op.op == NodeOp::edgewear) {
+        const float angle = op.in[2].op < 0 ? op.in[2].constant.x : 0.0f;
+        crease_angle_ = std::min(crease_angle_, std::max(angle, kLeastCrease_deg));
+    }
     ops_.push_back(op);
     return {static_cast<std::int16_t>(ops_.size() - 1), 0, {}};
 }
@@ -138,7 +155,8 @@ NodeResult GraphRun::run(const Graph::Op& op) noexcept {
         case NodeOp::texcoord:
             return {{in_.uv.x, in_.uv.y, 0.0f}, in_.uv_width, {}};
         case NodeOp::position:
-            return {value(op.in[0]).x > 0.5f ? in_.p_world : in_.p_object, in_.p_width, {}};
+            if (value(op.in[0]).x > 0.5f) return {in_.p_world, in_.p_width, {}};
+            return {in_.p_object, in_.p_width * in_.object_scale, {}};
         case NodeOp::normal:
             return {in_.n, 0.0f, {}};
         case NodeOp::geomcolor:
@@ -178,6 +196,25 @@ NodeResult GraphRun::run(const Graph::Op& op) noexcept {
             along(w.y, p.x, p.z);
             along(w.z, p.x, p.y);
             return {sum, 0.0f, {}};
+        }
+        case NodeOp::tangent:
+            return {frame_along(outward_normal(in_), in_.dpdu).s, 0.0f, {}};
+        case NodeOp::normalmap: {
+            const Vec3f local = unpacked_normal(value(op.in[0]), value(op.in[1]).x);
+            return {normal_from_tangent_space(in_, local), 0.0f, {}};
+        }
+        case NodeOp::bump: {
+            const float scale = value(op.in[1]).x;
+            const auto height = [&](const ShadeInput& at) {
+                return GraphRun(graph_, at, store_).value(op.in[0]).x * scale;
+            };
+            return {bumped_normal(value(op.in[2]), in_, height), 0.0f, {}};
+        }
+        case NodeOp::edgewear: {
+            if (!in_.creases) return {};
+            const NodeResult at = result(op.in[0]);
+            const EdgeWearParams wear{value(op.in[1]).x, value(op.in[2]).x, value(op.in[3]).x};
+            return {Vec3f(edge_wear(*in_.creases, at.v, wear, at.width, in_.front)), 0.0f, {}};
         }
         // What is decided by one input leaves the others alone.
         case NodeOp::mix: {

@@ -48,6 +48,9 @@ public:
     bool reads_uv() const noexcept { return reads_uv_; }
     bool reads_geometry() const noexcept { return reads_geometry_; }
     bool reads_vertex_color() const noexcept { return reads_color_; }
+    bool reads_tangent() const noexcept { return reads_tangent_; }
+    /// The least angle of creases that a node asks for, in degrees; infinite: none does.
+    float crease_angle_deg() const noexcept { return crease_angle_; }
 
     /// Adds what an output of `nodes` needs. Throws Error(scene) when there are too many.
     Wire add(const std::vector<NodeDesc>& nodes, int node, int output);
@@ -58,7 +61,8 @@ private:
 
     std::vector<Op> ops_;
     std::map<int, Wire> known_;  // by node, its main output
-    bool reads_uv_ = false, reads_geometry_ = false, reads_color_ = false;
+    bool reads_uv_ = false, reads_geometry_ = false, reads_color_ = false, reads_tangent_ = false;
+    float crease_angle_ = kInfinity;
 };
 
 /// A graph at one point.

@@ -41,12 +41,6 @@ struct SmoothSample {
 ///  for
 ///    each of their directions: the children of a ray tree.
 
-/// a if `yes`, else b, by a blend: both are computed.
-inline float pick(bool yes, float a, float b) { return yes ? a : b; }
-inline Vec3f pick(bool yes, Vec3f a, Vec3f b) {
-    return {yes ? a.x : b.x, yes ? a.y : b.y, yes ? a.z : b.z};
-}
-
 /// Relative luminance of linear Rec.709; near enough for choosing lobes and lights in any working
 /// space.
 constexpr float luminance(Color c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }

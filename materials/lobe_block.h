@@ -12,6 +12,7 @@
 #include "materials/lobes/glass.h"
 #include "materials/lobes/reflection.h"
 #include "materials/lobes/subsurface.h"
+#include "materials/terminator.h"
 #include "materials/thin_film.h"
 #include "renderer/core/sampler.h"
 
@@ -43,7 +44,12 @@ public:
     template <class Model>
     static constexpr bool kHas = (std::is_same_v<Model, Models> || ...);
 
-    Vec3Lanes wo;  // toward the viewers, local
+    Vec3Lanes wo;    // toward the viewers, local
+    Vec3Lanes even;  // normals of the surface without its bumps, local; at first those of the frame
+
+    LobeBlock() noexcept {
+        for (int i = 0; i < kLanes; ++i) even.set(i, {0.0f, 0.0f, 1.0f});
+    }
 
     /// No lane has a lobe.
     void clear() noexcept {
@@ -178,7 +184,9 @@ private:
         all_or_few(lanes, [&](int i) {
             const LobeEval e = kind.model.get(i).eval(wo[i], wi_[i]);
             const bool there = kind.chance[i] > 0.0f;
-            const Color f = f_[i] + e.f * kind.weight[i];
+            Color f = e.f * kind.weight[i];
+            if constexpr (requires { Model::kDiffuse; }) f *= softened_terminator(even[i], wi_[i]);
+            f += f_[i];
             f_.set(i, pick(there, f, f_[i]));
             pdf_[i] = pick(there, pdf_[i] + e.pdf * kind.chance[i], pdf_[i]);
         });

@@ -5,9 +5,11 @@
 #include <utility>
 
 #include "materials/lobe.h"
+#include "materials/relief.h"
 #include "materials/surface/params_of.h"
 #include "materials/texel.h"
 #include "renderer/api/openpbr_inputs.h"
+#include "renderer/core/sampler.h"
 
 namespace tessera {
 namespace {
@@ -55,8 +57,8 @@ void visit_textures(Material& m, Visit visit) {
     };
     visit_openpbr(read_as(TextureUse::color));
     visit_displacement(read_as(TextureUse::data));
-    visit(m.geometry_normal, TextureUse::data);
-    visit(m.geometry_coat_normal, TextureUse::data);
+    visit(m.geometry_normal.texture, TextureUse::data);
+    visit(m.geometry_coat_normal.texture, TextureUse::data);
     for (auto& node : m.nodes)
         visit(node.texture, node.color ? TextureUse::color : TextureUse::data);
 }
@@ -71,6 +73,9 @@ void mark(const MaterialDesc& m, int node, std::vector<bool>& used) {
 void forget_unused_nodes(MaterialDesc& m) {
     std::vector<bool> used(m.nodes.size(), false);
     visit_inputs([&](auto member, const OpenPbrInput&) { mark(m, (m.*member).node, used); });
+    for (const NormalInput* input : {&m.geometry_normal, &m.geometry_coat_normal,
+                                     &m.geometry_tangent, &m.geometry_coat_tangent})
+        mark(m, input->node, used);
     for (std::size_t i = 0; i < used.size(); ++i)
         if (!used[i]) m.nodes[i].texture = -1;
 }
@@ -102,7 +107,7 @@ MaterialDesc folded(MaterialDesc m, bool displaced = false) {
     if (zero(m.coat_weight)) {
         drop(m.coat_color, m.coat_roughness, m.coat_roughness_anisotropy, m.coat_ior,
              m.coat_darkening);
-        m.geometry_coat_normal = -1;
+        m.geometry_coat_normal = m.geometry_coat_tangent = {};
     }
     if (zero(m.fuzz_weight)) drop(m.fuzz_color, m.fuzz_roughness);
     if (zero(m.thin_film_weight)) drop(m.thin_film_thickness, m.thin_film_ior);
@@ -154,10 +159,8 @@ void collect_textures(const MaterialDesc& desc, std::vector<TextureUse>& use,
 
 ShaderProgram::ShaderProgram(const MaterialDesc& desc) : m_(folded(desc)) {
     visit_textures(m_, [&](int texture, TextureUse) { facts_.textured |= texture >= 0; });
-    facts_.opacity_textured = m_.geometry_opacity.texture >= 0;
-    facts_.cutout = facts_.opacity_textured || m_.geometry_opacity.value < 1.0f;
-    facts_.emissive = !zero(m_.emission_luminance);
-    facts_.emission_textured = m_.emission_luminance.texture >= 0 || m_.emission_color.texture >= 0;
+    compile_opacity();
+    compile_emission();
     facts_.transmission = !zero(m_.transmission_weight);
     const bool boundary =
         !zero(m_.specular_weight) && (m_.specular_ior.value != 1.0f || m_.specular_ior.varies());
@@ -169,8 +172,7 @@ ShaderProgram::ShaderProgram(const MaterialDesc& desc) : m_(folded(desc)) {
     facts_.subsurface = !zero(m_.subsurface_weight) && !m_.geometry_thin_walled;
     facts_.dispersion = facts_.glass && !zero(m_.transmission_dispersion_scale);
     facts_.uv = facts_.textured;
-    facts_.tangent = m_.geometry_normal >= 0 || m_.geometry_coat_normal >= 0 ||
-                     !zero(m_.specular_roughness_anisotropy) ||
+    facts_.tangent = !zero(m_.specular_roughness_anisotropy) ||
                      (!zero(m_.coat_weight) && !zero(m_.coat_roughness_anisotropy));
     facts_.vertex_color = m_.use_vertex_color;
 
@@ -189,10 +191,15 @@ ShaderProgram::ShaderProgram(const MaterialDesc& desc) : m_(folded(desc)) {
             p.*v.scalar_param = value.x;
     }
     std::erase_if(varying_, [](const Varying& v) { return v.wired && v.wire.op < 0; });
-    facts_.textured |= !graph_.empty();
-    facts_.uv |= graph_.reads_uv();
-    facts_.geometry = graph_.reads_geometry();
-    facts_.vertex_color |= graph_.reads_vertex_color();
+    compile_relief();
+    for (const Graph* graph : {&graph_, &relief_, &opacity_graph_, &emission_graph_}) {
+        facts_.textured |= !graph->empty();
+        facts_.uv |= graph->reads_uv();
+        facts_.geometry |= graph->reads_geometry();
+        facts_.tangent |= graph->reads_tangent();
+        facts_.crease_angle_deg = std::min(facts_.crease_angle_deg, graph->crease_angle_deg());
+        facts_.vertex_color |= graph->reads_vertex_color();
+    }
     varies_ = !varying_.empty() || m_.use_vertex_color;
     p.thin_walled = m_.geometry_thin_walled;
     constant_ = Surface(p);
@@ -208,6 +215,44 @@ ShaderProgram::ShaderProgram(const MaterialDesc& desc) : m_(folded(desc)) {
         curves_ = std::make_shared<SurfaceCurves>(constant_.make_curves());
         constant_.curves = curves_.get();
     }
+}
+
+void ShaderProgram::compile_relief() {
+    const auto add = [&](const auto& input) {
+        return input.node >= 0 ? relief_.add(m_.nodes, input.node, input.output) : Wire{};
+    };
+    normal_ = add(m_.geometry_normal);
+    coat_normal_ = add(m_.geometry_coat_normal);
+    tangent_ = add(m_.geometry_tangent);
+    coat_tangent_ = add(m_.geometry_coat_tangent);
+    bump_ = add(m_.bump);
+    const bool bends = bends_normal() || bends_coat_normal(),
+               turns = turns_tangent() || turns_coat_tangent();
+    facts_.tangent |= bends || turns;
+    facts_.geometry |= bends || turns;
+    facts_.textured |= bends || turns;
+}
+
+void ShaderProgram::compile_opacity() {
+    const FloatInput& input = m_.geometry_opacity;
+    if (input.node >= 0) opacity_ = opacity_graph_.add(m_.nodes, input.node, input.output);
+    facts_.opacity_textured = input.varies();
+    facts_.opacity_geometry = opacity_graph_.reads_geometry() || opacity_graph_.reads_tangent() ||
+                              opacity_graph_.reads_vertex_color();
+    facts_.cutout = facts_.opacity_textured || input.value < 1.0f;
+}
+
+void ShaderProgram::compile_emission() {
+    const FloatInput& luminance = m_.emission_luminance;
+    const ColorInput& color = m_.emission_color;
+    if (luminance.node >= 0)
+        emission_luminance_ = emission_graph_.add(m_.nodes, luminance.node, luminance.output);
+    if (color.node >= 0) emission_color_ = emission_graph_.add(m_.nodes, color.node, color.output);
+    facts_.emissive = !zero(luminance);
+    facts_.emission_textured = luminance.varies() || color.varies();
+    facts_.emission_geometry = emission_graph_.reads_geometry() ||
+                               emission_graph_.reads_tangent() ||
+                               emission_graph_.reads_vertex_color();
 }
 
 void ShaderProgram::note_varying(ColorInput MaterialDesc::*input, Color SurfaceParams::*param) {
@@ -266,17 +311,44 @@ Color ShaderProgram::base_color(const ShadeInput& in, const TextureStore* store)
 }
 
 Color ShaderProgram::emission(const ShadeInput& in, const TextureStore* store) const noexcept {
-    const float radiance = read(m_.emission_luminance, in, store) * (1.0f / kLumensPerWatt);
-    return max(read(m_.emission_color, in, store) * radiance, Color(0.0f));
+    constexpr float kMost = 1e20f;
+    GraphRun run(emission_graph_, in, store);
+    const float luminance = m_.emission_luminance.node >= 0
+                                ? run.value(emission_luminance_).x
+                                : read(m_.emission_luminance, in, store);
+    const Color color = m_.emission_color.node >= 0 ? run.value(emission_color_)
+                                                    : read(m_.emission_color, in, store);
+    return kept(color, 0.0f, kMost) * (kept(luminance, 0.0f, kMost) * (1.0f / kLumensPerWatt));
 }
 
 Color ShaderProgram::visible_emission(const ShadeInput& in,
                                       const TextureStore* store) const noexcept {
     const Color c = emission(in, store);
-    return facts_.cutout ? c * opacity(in.uv, store) : c;
+    return facts_.cutout ? c * opacity(in, store) : c;
+}
+
+// Of a graph: the mean over points of its texture and object space. It only decides how often a
+// light is asked, so that it must not be nothing.
+Color ShaderProgram::mean_emission_of_graph(const TextureStore* store) const noexcept {
+    constexpr int kPoints = 256;
+    Color sum(0.0f);
+    for (int i = 0; i < kPoints; ++i) {
+        const auto at = [&](std::uint32_t axis) {
+            return static_cast<float>(hash_combine(axis, static_cast<std::uint32_t>(i)) >> 8) *
+                   0x1p-24f;
+        };
+        ShadeInput in;
+        in.uv = {at(1), at(2)};
+        in.p_object = in.p_world = Vec3f{at(3), at(4), at(5)} * 2.0f - Vec3f(1.0f);
+        in.n = {0, 0, 1};
+        sum += emission(in, store);
+    }
+    const Color mean = sum * (1.0f / kPoints);
+    return max_component(mean) > 0.0f ? mean : Color(1.0f / kLumensPerWatt);
 }
 
 Color ShaderProgram::mean_emission(const TextureStore* store) const noexcept {
+    if (!emission_graph_.empty()) return mean_emission_of_graph(store);
     Color c =
         color_of(m_.emission_color.value) * (m_.emission_luminance.value * (1.0f / kLumensPerWatt));
     for (const auto& [texture, grey] : {std::pair{m_.emission_color.texture, false},
@@ -288,28 +360,47 @@ Color ShaderProgram::mean_emission(const TextureStore* store) const noexcept {
     return max(c, Color(0.0f));
 }
 
-float ShaderProgram::opacity(Vec2f uv, const TextureStore* store) const noexcept {
+float ShaderProgram::opacity(const ShadeInput& in, const TextureStore* store) const noexcept {
     const FloatInput& o = m_.geometry_opacity;
+    if (o.node >= 0) return kept(GraphRun(opacity_graph_, in, store).value(opacity_).x, 0.0f, 1.0f);
     if (o.texture < 0) return o.value;
     const float v =
-        channel_of(store->sample(o.texture, uv.x, uv.y, 0.0f), opacity_channel(o, store));
+        channel_of(store->sample(o.texture, in.uv.x, in.uv.y, 0.0f), opacity_channel(o, store));
     return clamp01(o.value * (o.invert ? 1.0f - v : v));
 }
 
 Vec3f ShaderProgram::normal(const ShadeInput& in, const TextureStore* store) const noexcept {
-    return mapped_normal(m_.geometry_normal, m_.geometry_normal_scale, in, store);
+    Vec3f n = mapped_normal(m_.geometry_normal, normal_, in, store);
+    if (!m_.bump.varies()) return n;
+    return bumped_normal(n, in, [&](const ShadeInput& at) {
+        return m_.bump.node >= 0 ? GraphRun(relief_, at, store).value(bump_).x
+                                 : read(m_.bump, at, store);
+    });
 }
 
 Vec3f ShaderProgram::coat_normal(const ShadeInput& in, const TextureStore* store) const noexcept {
-    return mapped_normal(m_.geometry_coat_normal, m_.geometry_coat_normal_scale, in, store);
+    return mapped_normal(m_.geometry_coat_normal, coat_normal_, in, store);
 }
 
-Vec3f ShaderProgram::mapped_normal(int texture, float scale, const ShadeInput& in,
+Vec3f ShaderProgram::tangent(const ShadeInput& in, const TextureStore* store) const noexcept {
+    return GraphRun(relief_, in, store).value(tangent_);
+}
+
+Vec3f ShaderProgram::coat_tangent(const ShadeInput& in, const TextureStore* store) const noexcept {
+    return GraphRun(relief_, in, store).value(coat_tangent_);
+}
+
+Vec3f ShaderProgram::mapped_normal(const NormalInput& input, const Wire& wire, const ShadeInput& in,
                                    const TextureStore* store) const noexcept {
-    const Texel t = store->sample(texture, in.uv.x, in.uv.y, in.uv_width);
-    const Vec3f n{(2.0f * t[0] - 1.0f) * scale, (2.0f * t[1] - 1.0f) * scale,
-                  std::max(2.0f * t[2] - 1.0f, 1e-3f)};
-    return normalize(n);
+    if (input.node >= 0) {
+        const Vec3f n = GraphRun(relief_, in, store).value(wire);
+        const float l2 = length2(n);
+        return l2 > 0.0f && std::isfinite(l2) ? n * (1.0f / std::sqrt(l2)) : in.n;
+    }
+    if (input.texture < 0) return in.n;
+    const Texel t = store->sample(input.texture, in.uv.x, in.uv.y, in.uv_width);
+    const Vec3f local = unpacked_normal({t[0], t[1], t[2]}, input.scale);
+    return normal_from_tangent_space(in, {local.x, input.flip_y ? -local.y : local.y, local.z});
 }
 
 }  // namespace tessera

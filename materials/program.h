@@ -20,6 +20,8 @@ namespace tessera {
 struct ProgramFacts {
     bool cutout = false;  // opacity can be below 1
     bool opacity_textured = false;
+    bool opacity_geometry = false;   // reads more than texture coordinates
+    bool emission_geometry = false;  // as well
     bool emissive = false;
     bool emission_textured = false;
     bool specular = false;  // any lobe other than Lambert's
@@ -34,6 +36,8 @@ struct ProgramFacts {
     bool tangent = false;   // reads dpdu
     bool geometry = false;  // reads position, normal or instance
     bool vertex_color = false;
+    float crease_angle_deg = kInfinity;  // of the creases that it asks for, at least
+    bool creases() const noexcept { return crease_angle_deg < kInfinity; }
 };
 
 class ShaderProgram {
@@ -60,14 +64,19 @@ public:
     /// Mean emission over the texture, for choosing lights.
     Color mean_emission(const TextureStore* store) const noexcept;
     /// 1: light stops here.
-    float opacity(Vec2f uv, const TextureStore* store) const noexcept;
+    float opacity(const ShadeInput& in, const TextureStore* store) const noexcept;
     /// The constant that the opacity's texture is multiplied by.
     float opacity_factor() const noexcept { return m_.geometry_opacity.value; }
-    bool has_normal_map() const noexcept { return m_.geometry_normal >= 0; }
-    bool has_coat_normal_map() const noexcept { return m_.geometry_coat_normal >= 0; }
-    /// Normals in the tangent frame from the normal maps, which must be there.
+    bool bends_normal() const noexcept { return m_.geometry_normal.given() || m_.bump.varies(); }
+    bool bends_coat_normal() const noexcept { return m_.geometry_coat_normal.given(); }
+    bool turns_tangent() const noexcept { return m_.geometry_tangent.given(); }
+    bool turns_coat_tangent() const noexcept { return m_.geometry_coat_tangent.given(); }
+    /// Unit normals on in.n's side, in the world; in.n if the material says nothing of them.
     Vec3f normal(const ShadeInput& in, const TextureStore* store) const noexcept;
     Vec3f coat_normal(const ShadeInput& in, const TextureStore* store) const noexcept;
+    /// Which way highlights stretch, in the world; of any length, zero too.
+    Vec3f tangent(const ShadeInput& in, const TextureStore* store) const noexcept;
+    Vec3f coat_tangent(const ShadeInput& in, const TextureStore* store) const noexcept;
     const Graph& graph() const noexcept { return graph_; }
     /// Parameters that do not vary; what does is as if its images were white.
     const SurfaceParams& constant() const noexcept { return constant_.p; }
@@ -93,13 +102,21 @@ private:
     void add_varying(Varying v, int node, int output);
     SurfaceParams params(const ShadeInput& in, const TextureStore* store) const noexcept;
     Surface varied(const ShadeInput& in, const TextureStore* store) const noexcept;
-    Vec3f mapped_normal(int texture, float scale, const ShadeInput& in,
+    Color mean_emission_of_graph(const TextureStore* store) const noexcept;
+    void compile_relief();
+    void compile_opacity();
+    void compile_emission();
+    Vec3f mapped_normal(const NormalInput& input, const Wire& wire, const ShadeInput& in,
                         const TextureStore* store) const noexcept;
 
     MaterialDesc m_;
     Surface constant_{SurfaceParams()};  // what does not vary
     std::vector<Varying> varying_;
     Graph graph_;
+    // What is asked for apart from the surface.
+    Graph relief_, opacity_graph_, emission_graph_;
+    Wire normal_, coat_normal_, tangent_, coat_tangent_, bump_;
+    Wire opacity_, emission_color_, emission_luminance_;
     bool varies_ = false;
     Medium transmission_, subsurface_;  // constant_'s
     ProgramFacts facts_;

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "renderer/core/affine.h"
+#include "renderer/core/crease_tree.h"
 #include "renderer/core/vec.h"
 
 namespace tessera {
@@ -16,7 +18,14 @@ struct ShadeInput {
     Vec3f n;                  // shading normal, world
     float p_width = 0;        // footprint on the surface, scene units
     float facing = 1;         // |cosine| to the viewer
+    bool front = true;        // seen from where the faces' winding has the front
+    float object_scale = 1;   // object units in a scene unit
     std::uint32_t instance = 0;
+    const CreaseTree* creases = nullptr;  // of the object, for programs that ask for them
+    const Affinef* to_object = nullptr;   // from the scene; null: that is the object's space
+    // And those that say `tangent`:
+    Vec3f dpdu, dpdv;  // in the world; zero if there are no texture coordinates
+    float handed = 1;  // -1 where the uv chart is mirrored
 };
 
 }  // namespace tessera

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "renderer/core/cie.h"
+
 namespace tessera {
 namespace {
 
@@ -34,11 +36,8 @@ Color fringe_xyz(float opd) {
 // XYZ to linear Rec.709 with each row scaled so that equal energy is white: a film that does
 // nothing must not tint.
 Color to_rgb(Color c) {
-    const auto row = [&](float x, float y, float z) {
-        return (x * c.x + y * c.y + z * c.z) / (x + y + z);
-    };
-    return {row(3.2404542f, -1.5371385f, -0.4985314f), row(-0.9692660f, 1.8760108f, 0.0415560f),
-            row(0.0556434f, -0.2040259f, 1.0572252f)};
+    constexpr Vec3f r(kXyzToRed), g(kXyzToGreen), b(kXyzToBlue), one(1.0f);
+    return {dot(r, c) / dot(r, one), dot(g, c) / dot(g, one), dot(b, c) / dot(b, one)};
 }
 
 // Airy's sum for one polarisation: r12 at the film's top, r23 below it.

@@ -14,7 +14,7 @@ struct NoParameters {
 };
 
 struct DiffuseLobe {
-    static constexpr bool kDelta = false;
+    static constexpr bool kDelta = false, kDiffuse = true;
     using Lanes = NoParameters<DiffuseLobe>;
 
     LobeEval eval(Vec3f, Vec3f wi) const {

@@ -25,7 +25,7 @@ struct Fon {
 };
 
 struct EonLobe {
-    static constexpr bool kDelta = false;
+    static constexpr bool kDelta = false, kDiffuse = true;
     Color rho{0.8f};
     float roughness = 0.5f;
 

@@ -148,36 +148,44 @@ struct RoughSheet {
     Color albedo(Vec3f wo) const { return m.glass.shared(of_both(m.glass.fresnel(wo.z))); }
 };
 
-/// A ray tree's two children, and one of them by chance. Both as smooth lobes do.
-template <class Fresnel>
-struct SmoothGlass {
+/// A smooth boundary, or a sheet of two: both share light out alike, but a sheet lets it straight
+/// through.
+template <class Fresnel, bool kSheet>
+struct SmoothBoundary {
     static constexpr bool kDelta = true;
     Glass<Fresnel> glass;
 
     struct Lanes : Glass<Fresnel>::Lanes {
-        void set(int i, const SmoothGlass& g) { Glass<Fresnel>::Lanes::set(i, g.glass); }
-        SmoothGlass get(int i) const { return {Glass<Fresnel>::Lanes::get(i)}; }
+        void set(int i, const SmoothBoundary& g) { Glass<Fresnel>::Lanes::set(i, g.glass); }
+        SmoothBoundary get(int i) const { return {Glass<Fresnel>::Lanes::get(i)}; }
     };
 
     SmoothSample sample(Vec3f wo, Vec2f, float choice) const {
-        const Color f = glass.fresnel(wo.z);
+        const Color f = reflectance(wo);
         const float chance = mean_component(f);
         return choice < chance ? reflected(wo, f * (1.0f / chance))
                                : through(wo, (Color(1.0f) - f) * (1.0f / (1.0f - chance)));
     }
+    /// A ray tree's children.
     template <class Child>
     void branch(Vec3f wo, Child child) const {
-        const Color f = glass.fresnel(wo.z);
+        const Color f = reflectance(wo);
         child(reflected(wo, f));
         if (min_component(f) < 1.0f) child(through(wo, Color(1.0f) - f));
     }
-    Color albedo(Vec3f wo) const { return glass.shared(glass.fresnel(wo.z)); }
+    Color albedo(Vec3f wo) const { return glass.shared(reflectance(wo)); }
 
 private:
+    Color reflectance(Vec3f wo) const {
+        const Color f = glass.fresnel(wo.z);
+        return kSheet ? of_both(f) : f;
+    }
     SmoothSample reflected(Vec3f wo, Color share) const {
         return {mirrored(wo), glass.reflect_tint * share};
     }
     SmoothSample through(Vec3f wo, Color share) const {
+        if constexpr (kSheet)
+            return {{-wo, 1.0f, LobeClass::transmission}, glass.transmit_tint * share};
         const float eta = glass.fresnel.eta;
         const Vec3f t = refract(wo, {0, 0, 1}, eta, refracted_cosine(wo.z, eta));
         return {{normalize(t), eta, LobeClass::transmission},
@@ -186,36 +194,8 @@ private:
 };
 
 template <class Fresnel>
-struct SmoothSheet {
-    static constexpr bool kDelta = true;
-    Glass<Fresnel> glass;
-
-    struct Lanes : Glass<Fresnel>::Lanes {
-        void set(int i, const SmoothSheet& g) { Glass<Fresnel>::Lanes::set(i, g.glass); }
-        SmoothSheet get(int i) const { return {Glass<Fresnel>::Lanes::get(i)}; }
-    };
-
-    SmoothSample sample(Vec3f wo, Vec2f, float choice) const {
-        const Color f = of_both(glass.fresnel(wo.z));
-        const float chance = mean_component(f);
-        return choice < chance ? reflected(wo, f * (1.0f / chance))
-                               : through(wo, (Color(1.0f) - f) * (1.0f / (1.0f - chance)));
-    }
-    template <class Child>
-    void branch(Vec3f wo, Child child) const {
-        const Color f = of_both(glass.fresnel(wo.z));
-        child(reflected(wo, f));
-        child(through(wo, Color(1.0f) - f));
-    }
-    Color albedo(Vec3f wo) const { return glass.shared(of_both(glass.fresnel(wo.z))); }
-
-private:
-    SmoothSample reflected(Vec3f wo, Color share) const {
-        return {mirrored(wo), glass.reflect_tint * share};
-    }
-    SmoothSample through(Vec3f wo, Color share) const {
-        return {{-wo, 1.0f, LobeClass::transmission}, glass.transmit_tint * share};
-    }
-};
+using SmoothGlass = SmoothBoundary<Fresnel, false>;
+template <class Fresnel>
+using SmoothSheet = SmoothBoundary<Fresnel, true>;
 
 }  // namespace tessera

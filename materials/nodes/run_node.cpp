@@ -7,6 +7,7 @@
 #include "materials/lobe.h"
 #include "materials/nodes/blend.h"
 #include "materials/nodes/color_math.h"
+#include "materials/nodes/flakes.h"
 #include "materials/nodes/noise.h"
 #include "materials/nodes/pattern.h"
 
@@ -128,6 +129,14 @@ NodeResult arithmetic(NodeOp op, const NodeResult* in) {
             return in[1 + whole(a.x, 0, 4)];
         case NodeOp::rotate2d:
             return turned(in[0], b.x);
+        case NodeOp::rotate3d: {
+            // Rodrigues' formula, 1840.
+            const float l2 = length2(in[2].v), turn = b.x * (kPi / 180.0f);
+            if (!(l2 > 0.0f)) return in[0];
+            const Vec3f axis = in[2].v * (1.0f / std::sqrt(l2));
+            const float c = std::cos(turn), s = std::sin(turn);
+            return {a * c + cross(axis, a) * s + axis * (dot(axis, a) * (1.0f - c)), 0.0f, {}};
+        }
         case NodeOp::place2d: {
             NodeResult p = in[0];
             const Vec3f pivot = b, scale = in[2].v, offset = in[4].v;
@@ -246,6 +255,10 @@ NodeResult run_node(NodeOp op, const NodeResult* in) noexcept {
             p.dark = c(5), p.bright = c(6);
             const Rust r = rust(c(0), p, in[0].width);
             return {r.color, 0.0f, {r.mask, r.height, r.roughness}};
+        }
+        case NodeOp::flakes: {
+            const Flakes f = flakes(c(0), c(1), {n(2), n(3), n(4), n(5)}, in[0].width);
+            return {f.normal, 0.0f, {f.mask, f.random, f.roughness}};
         }
         default:
             return noise_node(op, in);

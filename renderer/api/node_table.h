@@ -19,6 +19,9 @@ enum class NodeOp : std::uint8_t {
     random,
     image,
     triplanar,
+    tangent,
+    normalmap,
+    bump,
     add,
     subtract,
     multiply,
@@ -58,6 +61,7 @@ enum class NodeOp : std::uint8_t {
     extract,
     ifgreater,
     switch_,
+    rotate3d,
     place2d,
     rotate2d,
     blackbody,
@@ -75,11 +79,18 @@ enum class NodeOp : std::uint8_t {
     marble,
     cloth,
     rust,
+    flakes,
+    edgewear,
     layer,
 };
 
 /// any: takes what it is given; as an output: what its inputs are.
 enum class NodeType : std::uint8_t { scalar, color, vector2, vector3, any };
+
+constexpr std::string_view name_of(NodeType type) {
+    constexpr std::string_view kNames[]{"number", "colour", "vector2", "vector3", "value"};
+    return kNames[static_cast<std::size_t>(type)];
+}
 
 struct NodeInputInfo {
     std::string_view name;
@@ -137,6 +148,9 @@ inline constexpr std::array kNodes{
              {{{"texcoord", NodeType::vector2}, {"uvtiling", NodeType::vector2, {1, 1, 0}}, {"uvoffset", NodeType::vector2}}}, {{{"alpha"}}}},
     NodeInfo{NodeOp::triplanar, "triplanarprojection", NodeType::color, "An image along the three axes of the object, blended by the normal.",
              {{{"position", NodeType::vector3}, {"scale", NodeType::scalar, {1, 0, 0}}, {"blend", NodeType::scalar, {1, 0, 0}}}}},
+    NodeInfo{NodeOp::tangent, "tangent", NodeType::vector3, "Tangent along u, unit, in the world."},
+    NodeInfo{NodeOp::normalmap, "normalmap", NodeType::vector3, "The texel of a tangent-space normal map (green up) as a unit normal in the world.", {{{"in", NodeType::vector3, {0.5f, 0.5f, 1}}, {"scale", NodeType::scalar, {1, 0, 0}}}}},
+    NodeInfo{NodeOp::bump, "bump", NodeType::vector3, "The normal tilted by a height in the object's units.", {{{"height", NodeType::scalar}, {"scale", NodeType::scalar, {1, 0, 0}}, {"normal", NodeType::vector3}}}},
     NodeInfo{NodeOp::add, "add", NodeType::any, "in1 + in2", {{node_table::kIn1, node_table::kIn2}}},
     NodeInfo{NodeOp::subtract, "subtract", NodeType::any, "in1 - in2", {{node_table::kIn1, node_table::kIn2}}},
     NodeInfo{NodeOp::multiply, "multiply", NodeType::any, "in1 * in2", {{node_table::kIn1, node_table::kOne2}}},
@@ -178,6 +192,7 @@ inline constexpr std::array kNodes{
     NodeInfo{NodeOp::ifgreater, "ifgreater", NodeType::any, "in1 if value1 > value2, else in2.", {{{"value1", NodeType::scalar, {1, 0, 0}}, {"value2", NodeType::scalar}, node_table::kIn1, node_table::kIn2}}},
     NodeInfo{NodeOp::switch_, "switch", NodeType::any, "in1 where which is below 1, in2 below 2, ...",
              {{{"which", NodeType::scalar}, node_table::kIn1, node_table::kIn2, {"in3", NodeType::any}, {"in4", NodeType::any}, {"in5", NodeType::any}}}},
+    NodeInfo{NodeOp::rotate3d, "rotate3d", NodeType::vector3, "in turned about axis by amount (degrees).", {{{"in", NodeType::vector3}, {"amount", NodeType::scalar}, {"axis", NodeType::vector3, {0, 1, 0}}}}},
     NodeInfo{NodeOp::place2d, "place2d", NodeType::vector2, "texcoord about pivot: divided by scale, turned by rotate (degrees), less offset.",
              {{node_table::kPlace, {"pivot", NodeType::vector2}, {"scale", NodeType::vector2, {1, 1, 0}}, {"rotate", NodeType::scalar}, {"offset", NodeType::vector2}}}},
     NodeInfo{NodeOp::rotate2d, "rotate2d", NodeType::vector2, "in turned by amount (degrees).", {{{"in", NodeType::vector2}, {"amount", NodeType::scalar}}}},
@@ -217,6 +232,12 @@ inline constexpr std::array kNodes{
              {{node_table::kAt, {"spread", NodeType::scalar, {0.4f, 0, 0}}, {"frequency", NodeType::scalar, {3, 0, 0}}, {"detail", NodeType::scalar, {0.6f, 0, 0}}, {"softness", NodeType::scalar, {0.15f, 0, 0}},
                {"dark", NodeType::color, {0.055f, 0.018f, 0.009f}}, {"bright", NodeType::color, {0.42f, 0.13f, 0.025f}}}},
              {{{"mask"}, {"height"}, {"roughness"}}}},
+    NodeInfo{NodeOp::flakes, "flakes", NodeType::vector3, "Flakes of metal paint: a unit normal in the world, tilted from flake to flake; flakes too small to be seen turn into roughness.",
+             {{node_table::kAt, {"normal", NodeType::vector3}, {"size", NodeType::scalar, {0.01f, 0, 0}}, {"coverage", NodeType::scalar, {0.5f, 0, 0}}, {"spread", NodeType::scalar, {0.4f, 0, 0}},
+               {"roughness", NodeType::scalar, {0.1f, 0, 0}}}},
+             {{{"mask"}, {"random"}, {"roughness"}}}},
+    NodeInfo{NodeOp::edgewear, "edgewear", NodeType::scalar, "1 on convex edges of a mesh where faces meet at `angle` degrees or more, 0 from `width` on; `contrast` hardens the rim.",
+             {{node_table::kAt, {"width", NodeType::scalar, {0.02f, 0, 0}}, {"angle", NodeType::scalar, {30, 0, 0}}, {"contrast", NodeType::scalar, {1, 0, 0}}}}},
     NodeInfo{NodeOp::layer, "layer", NodeType::any, "fg on bg by mask and a blend mode: 0 over, 1 multiply, 2 screen, 3 overlay, 4 add, 5 subtract, 6 max, 7 min, 8 soft light; bg is not read below a whole 'over'.",
              {{{"bg", NodeType::any}, {"fg", NodeType::any}, {"mask", NodeType::scalar, {1, 0, 0}}, {"blend", NodeType::scalar}}}},
 };

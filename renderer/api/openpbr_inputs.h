@@ -86,6 +86,10 @@ void visit_openpbr(Visit visit) {
     range(&M::emission_color, "emission_color", 0, kMany, "Factor on the emission.");
 
     unit(&M::geometry_opacity, "geometry_opacity", "0 cut out, 1 there.");
+
+    // Ours.
+    range(&M::bump, "bump", -kMany, kMany,
+          "Height over the surface in the object's units, for its normal only.");
 }
 
 /// Those that move the surface before it is traced.

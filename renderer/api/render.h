@@ -62,7 +62,7 @@ struct Statistics {
     std::uint64_t triangles_stored = 0, triangles_instanced = 0, instances = 0, lights = 0;
     std::uint64_t memory_peak = 0;  // bytes, resident
     std::uint64_t memory_geometry = 0, memory_bvh = 0, memory_textures = 0, memory_film = 0,
-                  memory_lights = 0;
+                  memory_lights = 0, memory_creases = 0;
     std::array<std::uint64_t, kInvalidCauses> invalid{};
     std::string first_invalid;  // "radiance at pixel 312,80 sample 17"
     std::uint64_t half_clamped = 0, half_non_finite = 0;

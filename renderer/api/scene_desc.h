@@ -65,6 +65,17 @@ struct FloatInput {
     bool operator==(const FloatInput&) const = default;
 };
 
+/// A normal: a tangent-space map (x along u, y along v), or an output of a node in the world's
+/// space.
+struct NormalInput {
+    int texture = -1;
+    float scale = 1;
+    bool flip_y = false;  // a map with its green downward, as DirectX has them
+    int node = -1, output = 0;
+    bool given() const { return texture >= 0 || node >= 0; }
+    bool operator==(const NormalInput&) const = default;
+};
+
 /// What an input of a node is given: a value (a number stands in all three places), or an output of
 /// another node: 0 the main one, k the k-th of those beside it.
 struct NodeValue {
@@ -138,10 +149,11 @@ struct MaterialDesc {
 
     FloatInput geometry_opacity{1};
     bool geometry_thin_walled = false;
-    int geometry_normal = -1;  // tangent-space normal map (texture index), OpenGL handedness
-    float geometry_normal_scale = 1;
-    int geometry_coat_normal = -1;  // the coat's own; none: the surface's, unmapped
-    float geometry_coat_normal_scale = 1;
+    NormalInput geometry_normal;
+    NormalInput geometry_coat_normal;   // none: the surface's, unmapped
+    NormalInput geometry_tangent;       // a node's; none: along u
+    NormalInput geometry_coat_tangent;  // none: the surface's
+    FloatInput bump{0};                 // height over the surface, in the object's units
 
     std::vector<NodeDesc> nodes;  // what inputs refer to
 

@@ -85,6 +85,7 @@ std::string to_json(const Statistics& s) {
           {"bvh", s.memory_bvh},
           {"textures", s.memory_textures},
           {"lights", s.memory_lights},
+          {"creases", s.memory_creases},
           {"film", s.memory_film}}},
         {"invalid", invalid},
         {"half", {{"clamped", s.half_clamped}, {"non_finite", s.half_non_finite}}},

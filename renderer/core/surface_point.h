@@ -9,11 +9,12 @@
 namespace tessera {
 
 struct SurfacePoint {
-    Vec3f p;        // from the primitive's own vertices, not from the ray
-    Vec3f p_error;  // bound on its rounding error, per axis
-    Vec3f ng;       // unit, outward by the winding
-    Vec3f ns;       // unit shading normal, on ng's side
-    Vec3f dpdu;     // tangent along u (not unit); zero if there are no uvs
+    Vec3f p;           // from the primitive's own vertices, not from the ray
+    Vec3f p_error;     // bound on its rounding error, per axis
+    Vec3f ng;          // unit, outward by the winding
+    Vec3f ns;          // unit shading normal, on ng's side
+    Vec3f lift;        // from p to the surface that smooth normals pretend; zero unless outward
+    Vec3f dpdu, dpdv;  // along u and v (not unit); zero if there are no uvs
     Vec2f uv;
     float handed = 1;         // -1 where the uv chart is mirrored
     float uv_per_length = 0;  // uv units per scene unit on the surface, for texture footprints

@@ -111,4 +111,10 @@ inline constexpr float kPi = 3.14159265358979323846f;
 inline constexpr float kInvPi = 0.31830988618379067154f;
 inline constexpr float kInfinity = __builtin_inff();
 
+/// a if `yes`, else b, by a blend: both are computed.
+inline float pick(bool yes, float a, float b) { return yes ? a : b; }
+inline Vec3f pick(bool yes, Vec3f a, Vec3f b) {
+    return {yes ? a.x : b.x, yes ? a.y : b.y, yes ? a.z : b.z};
+}
+
 }  // namespace tessera

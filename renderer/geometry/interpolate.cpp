@@ -3,71 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "renderer/core/robust.h"
+#include "renderer/geometry/mesh_point.h"
 
 namespace tessera {
 namespace {
 
-struct Corners {
-    std::size_t a, b, c;  // entries of the index arrays
-    float wa, wb, wc;
-};
-
-Corners corners_of(const Mesh& mesh, std::uint32_t face, float u, float v) {
-    const FaceWeights w = face_weights(face >= mesh.triangles, u, v);
-    const std::size_t first = mesh.corner(face);
-    return {first + w.a, first + w.b, first + w.c, w.wa, w.wb, w.wc};
-}
-
-// What every point has. Apart from SurfacePoint, so that it lives in registers until it is done.
-struct Point {
-    Vec3f p, p_error, ng, ns;
-};
-
-// From the shape's space to the scene's.
-inline Point to_world(const Placement& placed, const Point& at) {
-    const Affinef& m = placed.to_world;
-    // Normals by the cofactors, their sign kept outward under a mirror.
-    // Scaled first: the products of a huge map would overflow.
-    const float scale = 1.0f / max_component(max(abs(m.x), max(abs(m.y), abs(m.z))));
-    const Vec3f x = m.x * scale, y = m.y * scale, z = m.z * scale;
-    const Affinef cofactor(cross(y, z), cross(z, x), cross(x, y), {});
-    const float sign = dot(x, cofactor.x) < 0.0f ? -1.0f : 1.0f;
-    return {m.point(at.p), error_in_place(m, placed.condition, at.p, at.p_error),
-            normalize(cofactor.vector(at.ng)) * sign, normalize(cofactor.vector(at.ns)) * sign};
-}
-
 void texture_frame_to_world(const Affinef& m, SurfacePoint& s) {
     s.dpdu = m.vector(s.dpdu);
+    s.dpdv = m.vector(s.dpdv);
     if (m.determinant() < 0.0f) s.handed = -s.handed;
     const float scale = std::cbrt(std::fabs(m.determinant()));
     s.uv_per_length = scale > 0.0f ? s.uv_per_length / scale : 0.0f;
-}
-
-inline Point mesh_point(const Mesh& mesh, std::uint32_t face, const Hit& hit, bool colors,
-                        Color& vertex_color) {
-    const Corners k = corners_of(mesh, face, hit.u, hit.v);
-    const std::uint32_t ia = mesh.index[k.a], ib = mesh.index[k.b], ic = mesh.index[k.c];
-    const Vec3f a = mesh.position(ia), b = mesh.position(ib), c = mesh.position(ic);
-    const Vec3f p = a * k.wa + b * k.wb + c * k.wc;
-    // The rounding of the sum (PBRT 4e, eq. 6.24), and that of Embree's plane test, whose products
-    // are of differences between the vertices and the ray's origin: as large as the face, whatever
-    // the plane.
-    const Vec3f ab = b - a, ac = c - a;
-    const float reach = max_component(abs(ab) + abs(ac));
-    const Vec3f error = (abs(a * k.wa) + abs(b * k.wb) + abs(c * k.wc)) * gamma_bound(7) +
-                        Vec3f(reach * gamma_bound(3));
-    const Vec3f normal = cross(ab, ac);
-    const Vec3f ng = normal * (1.0f / std::sqrt(length2(normal)));
-    Vec3f ns = ng;
-    if (mesh.normal_at > 0) {
-        const Vec3f n = mesh.normal(ia) * k.wa + mesh.normal(ib) * k.wb + mesh.normal(ic) * k.wc;
-        const float l2 = length2(n);
-        if (l2 > 1e-12f) ns = n / std::sqrt(l2);
-    }
-    if (colors && mesh.color_at > 0)
-        vertex_color = mesh.color(ia) * k.wa + mesh.color(ib) * k.wb + mesh.color(ic) * k.wc;
-    return {p, error, ng, ns};
 }
 
 void mesh_texture_frame(const Mesh& mesh, const Hit& hit, SurfacePoint& s) {
@@ -82,7 +28,9 @@ void mesh_texture_frame(const Mesh& mesh, const Hit& hit, SurfacePoint& s) {
     const float uv_area2 = e1.x * e2.y - e2.x * e1.y;
     s.uv_per_length = std::sqrt(std::fabs(uv_area2) / length(cross(ab, ac)));
     s.handed = uv_area2 < 0.0f ? -1.0f : 1.0f;
-    if (uv_area2 != 0.0f) s.dpdu = (ab * e2.y - ac * e1.y) * (1.0f / uv_area2);
+    if (uv_area2 == 0.0f) return;
+    s.dpdu = (ab * e2.y - ac * e1.y) * (1.0f / uv_area2);
+    s.dpdv = (ac * e1.x - ab * e2.x) * (1.0f / uv_area2);
 }
 
 // Embree solves the sphere in float; its t only says which of the two roots was meant.
@@ -101,10 +49,17 @@ Point sphere_point(const Sphere& sphere, const Ray& local, float t, SurfacePoint
             static_cast<float>(std::acos(std::max(-1.0, std::min(1.0, -n.y))) /
                                3.14159265358979323846)};
     s.dpdu = Vec3f(Vec3d{n.z, 0, -n.x} * (2.0 * 3.14159265358979323846 * r));
+    const double ring = std::sqrt(n.x * n.x + n.z * n.z);
+    if (ring > 0)
+        s.dpdv =
+            Vec3f(Vec3d{-n.x * n.y / ring, ring, -n.z * n.y / ring} * (3.14159265358979323846 * r));
     s.uv_per_length = 1.0f / (kPi * sphere.radius);
     // Embree's own float solution is good to a few roundings of centre and radius.
     return {Vec3f(Vec3d(sphere.center) + n * r),
-            (abs(sphere.center) + Vec3f(sphere.radius)) * gamma_bound(16), Vec3f(n), Vec3f(n)};
+            (abs(sphere.center) + Vec3f(sphere.radius)) * gamma_bound(16),
+            Vec3f(n),
+            Vec3f(n),
+            {}};
 }
 
 Point disc_point(const Disc& disc, const Ray& local, SurfacePoint& s) {
@@ -115,9 +70,13 @@ Point disc_point(const Disc& disc, const Ray& local, SurfacePoint& s) {
     s.uv = {0.5f + 0.5f * dot(q, frame.s) / disc.radius,
             0.5f + 0.5f * dot(q, frame.t) / disc.radius};
     s.dpdu = frame.s * (2.0f * disc.radius);
+    s.dpdv = frame.t * (2.0f * disc.radius);
     s.uv_per_length = 0.5f / disc.radius;
-    return {Vec3f(p), abs(disc.center) * gamma_bound(8) + Vec3f(disc.radius * gamma_bound(8)),
-            disc.normal, disc.normal};
+    return {Vec3f(p),
+            abs(disc.center) * gamma_bound(8) + Vec3f(disc.radius * gamma_bound(8)),
+            disc.normal,
+            disc.normal,
+            {}};
 }
 
 // The ray in the space of an instanced shape, in double.
@@ -132,15 +91,14 @@ SurfacePoint surface_point(const Geometry& geometry, const HitTarget& target, co
                            const Ray& ray, bool colors) noexcept {
     SurfacePoint s;
     const Placement& placed = geometry.placements[target.placement];
-    s.placement = target.placement;
-    s.light = placed.light;
     Point at;
     if (placed.kind == PlacedKind::mesh) {
         const Mesh& mesh = geometry.meshes[placed.shape];
-        s.face = mesh.parts[target.part].first_face + hit.prim;
-        s.material = mesh.materials[mesh.material_slot(s.face)];
-        at = mesh_point(mesh, s.face, hit, colors, s.vertex_color);
+        name_mesh_hit(placed, mesh, target, hit, s);
+        at = mesh_point(face_corners(mesh, s.face, hit, colors, s.vertex_color));
     } else {
+        s.placement = target.placement;
+        s.light = placed.light;
         const Ray local = placed.instanced ? to_local(placed.to_world, ray) : ray;
         if (placed.kind == PlacedKind::sphere) {
             at = sphere_point(geometry.spheres[placed.shape], local, hit.t, s);
@@ -149,13 +107,10 @@ SurfacePoint surface_point(const Geometry& geometry, const HitTarget& target, co
             at = disc_point(geometry.discs[placed.shape], local, s);
             s.material = geometry.discs[placed.shape].material;
         }
+        if (placed.material >= 0) s.material = placed.material;
     }
-    if (placed.material >= 0) s.material = placed.material;
-    if (placed.instanced) at = to_world(placed, at);
-    s.p = at.p;
-    s.p_error = at.p_error;
-    s.ng = at.ng;
-    s.ns = dot(at.ns, at.ng) < 0.0f ? -at.ns : at.ns;
+    if (placed.instanced) at = to_world(placed.to_world, placed.condition, at);
+    put(at, s);
     return s;
 }
 

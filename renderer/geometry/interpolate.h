@@ -13,6 +13,11 @@ namespace tessera {
 SurfacePoint surface_point(const Geometry& geometry, const HitTarget& target, const Hit& hit,
                            const Ray& ray, bool colors) noexcept;
 
+/// The same for the lanes of a block; the other lanes of `out` are left alone.
+void surface_points(const Geometry& geometry, LaneMask lanes, const HitTarget (&targets)[kLanes],
+                    const Hit (&hits)[kLanes], const Ray (&rays)[kLanes], bool colors,
+                    SurfacePoint (&out)[kLanes]) noexcept;
+
 /// Asks the cache for what surface_point will read of a mesh: first the index, later, when that has
 /// come, the vertices. A block's lanes wait for memory together rather than one after the other.
 void prefetch_index(const Geometry& geometry, const HitTarget& target, const Hit& hit) noexcept;

@@ -13,6 +13,13 @@ double norm(const Affined& m) { return max_component(abs(m.x) + abs(m.y) + abs(m
 
 }  // namespace
 
+void Placement::objects_are_at(const Affined& to_scene) {
+    const Affined m = inverse(to_scene);
+    to_object = Affinef(m);
+    object_scale =
+        static_cast<float>(std::sqrt(std::max({length2(m.x), length2(m.y), length2(m.z)})));
+}
+
 void Placement::instance_at(const Affined& m) {
     to_world = Affinef(m);
     instanced = true;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "renderer/core/affine.h"
+#include "renderer/core/crease_tree.h"
 #include "renderer/core/vec.h"
 
 namespace tessera {
@@ -67,6 +68,7 @@ struct Mesh {
     std::vector<std::uint32_t> face_object;    // empty: 0
     std::vector<std::int32_t> materials;       // slot -> scene material
     std::vector<MeshPart> parts;
+    CreaseTree creases;  // in the coordinates of the file; empty unless a material asks
     std::uint32_t triangles = 0, quads = 0;
 
     std::uint32_t faces() const noexcept { return triangles + quads; }
@@ -103,6 +105,7 @@ enum class PlacedKind : std::uint8_t { mesh, sphere, disc };
 struct Placement {
     Affinef to_world;
     Affinef to_object;           // from the scene to the coordinates of the shape's file
+    float object_scale = 1;      // of to_object, along the axis that it stretches most
     std::uint32_t shape = 0;     // index among the shapes of its kind
     std::int32_t material = -1;  // replaces the shape's materials
     std::int32_t light = -1;     // the light that this shape is the body of
@@ -111,6 +114,8 @@ struct Placement {
     bool camera_visible = true;
     float condition = 1;  // of to_world: how much a rounding on the way in grows on the way out
 
+    /// Sets to_object from where the shape's file is put in the scene.
+    void objects_are_at(const Affined& to_scene);
     /// Places through an Embree instance.
     void instance_at(const Affined& to_world);
 };

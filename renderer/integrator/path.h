@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <new>
 #include <type_traits>
 
 #include "renderer/core/robust.h"
@@ -36,6 +35,8 @@ public:
             intersect(depth);
             escape(depth);
             draw_samples(depth);
+            surface_points(scene_.geometry(), alive_, target_.array(), hit_.array(), ray_.array(),
+                           F.vertex_colors, surface_.array());
             each(alive_, [&](int i) { arrive(i, depth); });
             face_viewer();
             find_lobes();
@@ -55,12 +56,6 @@ private:
     template <class Function>
     static void each(LaneMask lanes, Function f) {
         for (; lanes != 0; lanes &= lanes - 1) f(std::countr_zero(lanes));
-    }
-    // What f() returns, made where it is kept: a copy would wait for its parts.
-    template <class T, class Function>
-    static void make(T& place, Function f) {
-        static_assert(std::is_trivially_destructible_v<T>);
-        new (&place) T(f());
     }
     void stop(int i) noexcept { alive_ &= ~(1u << i); }
 
@@ -196,9 +191,6 @@ private:
     // ---- arrive: the surface, and the light it sends of itself
     void arrive(int i, std::uint32_t depth) noexcept {
         const Vec3f d = ray_[i].d;
-        make(surface_[i], [&] {
-            return surface_point(scene_.geometry(), target_[i], hit_[i], ray_[i], F.vertex_colors);
-        });
         SurfacePoint& s = surface_[i];
         if (!is_finite(s.p) || !is_finite(s.ng) || !is_finite(s.ns) || !(length2(s.ng) > 0.5f)) {
             invalid(InvalidCause::hit, i);
@@ -266,6 +258,8 @@ private:
             const bool front = dot(s.ng, viewer) >= 0.0f;
             frame_.front.is[i] = front;
             frame_.ng.set(i, front ? s.ng : -s.ng);
+            frame_.even.set(i, front ? s.ns : -s.ns);
+            frame_.lift.set(i, front ? s.lift : Vec3f{});
             wo.set(i, viewer);
             ns.set(i, facing_normal<F>(s, scene_.program(s.material), shade_in_[i],
                                        scene_.textures(), front));
@@ -273,17 +267,23 @@ private:
             p_error_.set(i, s.p_error);
         });
         for (int i = 0; i < kLanes; ++i) {
-            const Frame f(visible_normal(ns[i], wo[i]));
+            const Vec3f even = frame_.even[i];
+            const Vec3f guard = pick(is_lifted(frame_.lift[i]), even, frame_.ng[i]);
+            const Frame f(consistent_normal(ns[i], guard, wo[i]));
+            frame_.guard.set(i, guard);
             frame_.set_shading(i, f);
             lobes_.wo.set(i, f.to_local(wo[i]));
+            lobes_.even.set(i, f.to_local(even));
         }
         if constexpr (F.textures || F.specular) {
             each(alive_, [&](int i) {
                 const SurfacePoint& s = surface_[i];
                 if (!frame_follows_texture<F>(scene_.program(s.material))) return;
-                const Frame f = frame_along(frame_.n[i], s.dpdu);
+                const Frame f = frame_in_texture<F>(frame_.n[i], s, scene_.program(s.material),
+                                                    shade_in_[i], scene_.textures());
                 frame_.set_shading(i, f);
                 lobes_.wo.set(i, f.to_local(wo[i]));
+                lobes_.even.set(i, f.to_local(frame_.even[i]));
             });
         }
     }
@@ -291,15 +291,16 @@ private:
     void find_lobes() noexcept {
         lobes_.clear();
         each(alive_, [&](int i) {
-            from_[i] = {surface_[i].p};
+            from_[i] = {surface_[i].p + frame_.lift[i]};
             const ShaderProgram& program = scene_.program(surface_[i].material);
             View view;
             view.front = frame_.front.is[i] != 0;
             if constexpr (kMedia<F>) {
                 if (inside_[i].leaves_body()) return lobes_.push(i, DiffuseLobe{}, Color(1.0f));
                 view.eta = inside_[i].eta();
-                view.coat = coat_frame<F>(surface_[i], program, shade_in_[i], scene_.textures(),
-                                          view.front, frame_.shading(i), lobes_.wo[i]);
+                view.coat = coat_frame<F>(
+                    surface_[i], program, shade_in_[i], scene_.textures(), view.front,
+                    frame_.shading(i), frame_.shading(i).to_local(frame_.guard[i]), lobes_.wo[i]);
             }
             push_lobes<F>(program, shade_in_[i], scene_.textures(), view, i, lobes_);
         });
@@ -341,7 +342,7 @@ private:
         LaneFlags faced;
         for (int i = 0; i < kLanes; ++i) {
             const Vec3f wi = light_.wi[i], local = frame_.shading(i).to_local(wi);
-            const Vec3f o = offset_origin(p_[i], p_error_[i], frame_.ng[i], wi);
+            const Vec3f o = ray_origin(p_[i], p_error_[i], frame_.ng[i], frame_.lift[i], wi, local);
             const Vec3f end = offset_origin(light_.p[i], light_.p_error[i], light_.n[i], -wi) - o;
             const bool infinite = light_.infinite[i] != 0;
             shadow_o_.set(i, o);
@@ -350,7 +351,8 @@ private:
             // The end itself is not in the way.
             shadow_t_max_[i] = infinite ? kInfinity : 0x1.fffffcp-1f;
             wi_.set(i, local);
-            faced.is[i] = same_side(wi, local, frame_.ng[i]) && (F.transmission || local.z > 0.0f);
+            faced.is[i] =
+                same_side(wi, local, frame_.guard[i]) && (F.transmission || local.z > 0.0f);
         }
         return faced.mask();
     }
@@ -358,10 +360,8 @@ private:
     // An emissive mesh says by its material what it sends.
     void look_at_emitter(int i) noexcept {
         if (light_.material[i] < 0) return;
-        ShadeInput in;
-        in.uv = light_.uv[i];
-        light_.radiance.set(
-            i, scene_.program(light_.material[i]).visible_emission(in, scene_.textures()));
+        light_.radiance.set(i, emitter_radiance(scene_, light_.material[i], light_.placement[i],
+                                                light_.uv[i], light_.p[i], light_.n[i]));
     }
 
     // What the lights give if nothing is in the way. Returns the lanes that it is worth a ray for.
@@ -429,9 +429,9 @@ private:
         LaneFlags leaves;
         for (int i = 0; i < kLanes; ++i) {
             const Vec3f local = scattered_.wi[i], wi = frame_.shading(i).to_world(local);
-            next_o_.set(i, offset_origin(p_[i], p_error_[i], frame_.ng[i], wi));
+            next_o_.set(i, ray_origin(p_[i], p_error_[i], frame_.ng[i], frame_.lift[i], wi, local));
             next_d_.set(i, wi);
-            const bool same = same_side(wi, local, frame_.ng[i]);
+            const bool same = same_side(wi, local, frame_.guard[i]);
             const bool carries = max_component(throughput_[i]) > 0.0f;
             leaves.is[i] = same & carries;
         }

@@ -7,7 +7,8 @@
 #include <type_traits>
 
 #include "materials/surface/openpbr.h"
-#include "renderer/scene/scene.h"
+#include "renderer/core/robust.h"
+#include "renderer/scene/point_input.h"
 
 namespace tessera {
 
@@ -25,59 +26,63 @@ struct FacingFrame {
     Vec3f ng;  // geometric normal on wo's side
     Vec3f wo;  // local
     bool front = true;
+    Vec3f even;   // the shading normal before bumps
+    Vec3f guard;  // normal of the surface that light is tested against: ng, or even where lifted
+    Vec3f lift;   // from the point to where reflected rays start
 };
 
 /// Those of a block.
 struct FacingFrames {
     Vec3Lanes s, t, n;  // the shading frames' axes
-    Vec3Lanes ng;
+    Vec3Lanes ng, even, guard, lift;
     LaneFlags front;
 
     Frame shading(int i) const { return {s[i], t[i], n[i]}; }
     void set_shading(int i, const Frame& f) { s.set(i, f.s), t.set(i, f.t), n.set(i, f.n); }
 };
 
-/// A shading normal that wo cannot see is bent until it can, just.
-inline Vec3f visible_normal(Vec3f ns, Vec3f wo) {
+inline bool is_lifted(Vec3f lift) { return length2(lift) > 0.0f; }
+
+/// A shading normal that wo cannot see is bent until it can, just; one in which the mirror image
+/// would lie below the surface, until it lies above. Keller et al., "The Iray Light Transport
+/// Simulation and Rendering System", 2017, section A.3. guard: of the surface.
+inline Vec3f consistent_normal(Vec3f ns, Vec3f guard, Vec3f wo) {
     constexpr float kGrazing = 1e-3f;
     const float c = dot(ns, wo);
-    const Vec3f bent = normalize(ns + wo * (kGrazing - c));
-    const bool seen = c >= kGrazing;
-    return {seen ? ns.x : bent.x, seen ? ns.y : bent.y, seen ? ns.z : bent.z};
+    const Vec3f n = pick(c >= kGrazing, ns, normalize(ns + wo * (kGrazing - c)));
+    const Vec3f mirrored = n * (2.0f * dot(n, wo)) - wo;
+    const float least = std::clamp(0.9f * dot(guard, wo), 1e-4f, 0.02f);
+    const float lift = least - dot(mirrored, guard);
+    return pick(lift > 0.0f, normalize(normalize(mirrored + guard * lift) + wo), n);
 }
 
-/// A normal of a normal map, which lives in the frame of the unflipped shading normal; none if it
-/// looks away from the surface.
-inline bool map_normal(const SurfacePoint& s, Vec3f mapped, bool front, Vec3f& out) {
-    const Frame base = frame_along(s.ns, s.dpdu);
-    const Vec3f m = normalize(base.to_world({mapped.x, mapped.y * s.handed, mapped.z}));
-    const Vec3f n = front ? m : -m;
-    if (!(dot(n, front ? s.ng : -s.ng) > 0.0f)) return false;
-    out = n;
-    return true;
-}
-
-/// The shading normal on the viewer's side, the normal map applied.
+/// The shading normal on the viewer's side, maps and bumps applied.
 template <Features F>
 Vec3f facing_normal(const SurfacePoint& s, const ShaderProgram& program, const ShadeInput& in,
                     const TextureStore* textures, bool front) {
-    Vec3f n = front ? s.ns : -s.ns;
     if constexpr (F.textures) {
-        if (program.has_normal_map()) map_normal(s, program.normal(in, textures), front, n);
+        if (program.bends_normal()) {
+            const Vec3f n = program.normal(in, textures);
+            return in.front == front ? n : -n;
+        }
     }
-    return n;
+    return front ? s.ns : -s.ns;
 }
 
 /// The coat's frame within the shading frame: over a bumpy base the coat is even, or has a normal
 /// map of its own.
 template <Features F>
 Frame coat_frame(const SurfacePoint& s, const ShaderProgram& program, const ShadeInput& in,
-                 const TextureStore* textures, bool front, const Frame& shading, Vec3f wo) {
+                 const TextureStore* textures, bool front, const Frame& shading, Vec3f guard,
+                 Vec3f wo) {
     if (!program.facts().coat) return {};
-    if (!program.has_normal_map() && !program.has_coat_normal_map()) return {};
+    const bool bends = program.bends_coat_normal(), turns = program.turns_coat_tangent();
+    if (!program.bends_normal() && !bends && !turns) return {};
     Vec3f n = front ? s.ns : -s.ns;
-    if (program.has_coat_normal_map()) map_normal(s, program.coat_normal(in, textures), front, n);
-    return frame_along(visible_normal(shading.to_local(n), wo), {1, 0, 0});
+    if (bends) n = program.coat_normal(in, textures) * (in.front == front ? 1.0f : -1.0f);
+    const Vec3f along =
+        turns ? shading.to_local(program.coat_tangent(in, textures)) : Vec3f{1, 0, 0};
+    return frame_along(consistent_normal(shading.to_local(n), guard, wo), along);
 }
 
 /// Whether the material's look turns with the texture's frame.
@@ -87,14 +92,29 @@ bool frame_follows_texture(const ShaderProgram& program) {
     return false;
 }
 
+/// The frame with its first axis the way that highlights stretch.
+template <Features F>
+Frame frame_in_texture(Vec3f n, const SurfacePoint& s, const ShaderProgram& program,
+                       const ShadeInput& in, const TextureStore* textures) {
+    if constexpr (F.textures) {
+        if (program.turns_tangent()) return frame_along(n, program.tangent(in, textures));
+    }
+    return frame_along(n, s.dpdu);
+}
+
 template <Features F>
 FacingFrame facing_frame(const SurfacePoint& s, const ShaderProgram& program, const ShadeInput& in,
                          const TextureStore* textures, Vec3f wo) {
     FacingFrame f;
     f.front = dot(s.ng, wo) >= 0.0f;
     f.ng = f.front ? s.ng : -s.ng;
-    const Vec3f n = visible_normal(facing_normal<F>(s, program, in, textures, f.front), wo);
-    f.shading = frame_follows_texture<F>(program) ? frame_along(n, s.dpdu) : Frame(n);
+    f.even = f.front ? s.ns : -s.ns;
+    f.lift = f.front ? s.lift : Vec3f{};
+    f.guard = is_lifted(f.lift) ? f.even : f.ng;
+    const Vec3f n =
+        consistent_normal(facing_normal<F>(s, program, in, textures, f.front), f.guard, wo);
+    f.shading = frame_follows_texture<F>(program) ? frame_in_texture<F>(n, s, program, in, textures)
+                                                  : Frame(n);
     f.wo = f.shading.to_local(wo);
     return f;
 }
@@ -131,20 +151,24 @@ ShadeInput shade_input(const Scene& scene, const ShaderProgram* program, const H
     if constexpr (F.vertex_colors) in.vertex_color = s.vertex_color;
     if constexpr (F.textures) {
         if (program && program->facts().geometry) {
-            in.p_object = scene.geometry().placements[s.placement].to_object.point(s.p);
-            in.p_world = Vec3f(Vec3d(s.p) + scene.origin());
-            in.n = dot(s.ns, d) <= 0.0f ? s.ns : -s.ns;
+            place_input(scene, s, in);
+            in.front = dot(s.ng, d) <= 0.0f;
+            if (!in.front) in.n = -s.ns;
             in.facing = std::fabs(dot(s.ns, d));
             in.p_width = cone_width / std::max(std::sqrt(std::fabs(dot(s.ng, d))), 0.2f);
-            in.instance = s.placement;
         }
     }
     return in;
 }
 
-/// True if the shading frame and the geometry agree on which side wi leaves.
-inline bool same_side(Vec3f wi_world, Vec3f wi_local, Vec3f ng) {
-    return (dot(wi_world, ng) > 0.0f) == (wi_local.z > 0.0f);
+/// True if the shading frame and the surface agree on which side wi leaves.
+inline bool same_side(Vec3f wi_world, Vec3f wi_local, Vec3f guard) {
+    return (dot(wi_world, guard) > 0.0f) == (wi_local.z > 0.0f);
+}
+
+/// Where a ray along wi starts: reflected light at the surface that smooth normals pretend.
+inline Vec3f ray_origin(Vec3f p, Vec3f p_error, Vec3f ng, Vec3f lift, Vec3f wi, Vec3f wi_local) {
+    return offset_origin(p + pick(wi_local.z > 0.0f, lift, Vec3f{}), p_error, ng, wi);
 }
 
 }  // namespace tessera

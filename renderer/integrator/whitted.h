@@ -130,11 +130,13 @@ private:
             out_[i].radiance += node.weight * program->emission(in, scene_.textures());
         v.frame = facing_frame<F>(v.s, *program, in, scene_.textures(), -node.ray.d);
         lobes_.wo.set(i, v.frame.wo);
+        lobes_.even.set(i, v.frame.shading.to_local(v.frame.even));
         View view;
         view.front = v.frame.front;
         view.walks = false;
-        view.coat = coat_frame<F>(v.s, *program, in, scene_.textures(), v.frame.front,
-                                  v.frame.shading, v.frame.wo);
+        view.coat =
+            coat_frame<F>(v.s, *program, in, scene_.textures(), v.frame.front, v.frame.shading,
+                          v.frame.shading.to_local(v.frame.guard), v.frame.wo);
         push_lobes<F>(*program, in, scene_.textures(), view, i, lobes_);
         if (node.depth == 0) out_[i].albedo = lobes_.albedo(i);
         out_[i].radiance +=
@@ -179,15 +181,13 @@ private:
         LightSample light;
         if (!sample_light(source, {v.s.p}, u, light)) return false;
         const Vec3f wi = v.frame.shading.to_local(light.wi);
-        if (!same_side(light.wi, wi, v.frame.ng)) return false;
-        if (light.material >= 0) {
-            ShadeInput in;
-            in.uv = light.uv;
-            light.radiance = scene_.program(light.material).visible_emission(in, scene_.textures());
-        }
+        if (!same_side(light.wi, wi, v.frame.guard)) return false;
+        if (light.material >= 0)
+            light.radiance = emitter_radiance(scene_, light.material, light.placement, light.uv,
+                                              light.p, light.n);
         wi_.set(i, wi);
         pending_[i] = node_[i].weight * light.radiance * (1.0f / light.pdf);
-        const Vec3f o = offset_origin(v.s.p, v.s.p_error, v.s.ng, light.wi);
+        const Vec3f o = ray_origin(v.s.p, v.s.p_error, v.s.ng, v.frame.lift, light.wi, wi);
         Ray ray{o, light.wi, kInfinity, kOtherRays};
         if (!light.infinite) {
             ray.d = offset_origin(light.p, light.p_error, light.n, -light.wi) - o;
@@ -212,9 +212,10 @@ private:
         const Node& node = node_[i];
         const Vec3f wi = v.frame.shading.to_world(s.to.wi);
         const Color weight = node.weight * s.weight * share;
-        if (!(max_component(weight) > kFaintest) || !same_side(wi, s.to.wi, v.frame.ng)) return;
+        if (!(max_component(weight) > kFaintest) || !same_side(wi, s.to.wi, v.frame.guard)) return;
         push(i,
-             {{offset_origin(v.s.p, v.s.p_error, v.s.ng, wi), wi, kInfinity, kOtherRays},
+             {{ray_origin(v.s.p, v.s.p_error, v.s.ng, v.frame.lift, wi, s.to.wi), wi, kInfinity,
+               kOtherRays},
               weight,
               node.cone_width,
               node.cone_spread,

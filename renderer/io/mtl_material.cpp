@@ -235,10 +235,10 @@ void Mapper::maps() {
         note("bump", "bump file is taken for a normal map by its name");
     const bool use_bump = !has("norm") && has("bump") && bump_is_normal;
     const MtlTexture& normal = use_bump ? v_.bump : v_.norm;
-    out_.geometry_normal = texture(use_bump ? "bump" : "norm", normal);
-    if (out_.geometry_normal >= 0) {
+    out_.geometry_normal.texture = texture(use_bump ? "bump" : "norm", normal);
+    if (out_.geometry_normal.given()) {
         const float scale = normal.bump;
-        out_.geometry_normal_scale = scale >= 0 && scale <= 10 ? scale : 1;
+        out_.geometry_normal.scale = scale >= 0 && scale <= 10 ? scale : 1;
     }
 }
 

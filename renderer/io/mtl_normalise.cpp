@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "renderer/core/cie.h"
 #include "renderer/io/obj_text.h"
 
 namespace tessera {
@@ -199,10 +200,9 @@ void BlockWriter::color(std::string_view key, std::string_view rest) {
     if (count == 0) return damage("broken material statement: a value is missing after", key);
     // One value is grey; so are the channels that two leave out.
     for (std::size_t i = count; i < c.size(); ++i) c[i] = c[0];
-    if (xyz) {  // CIE XYZ to linear Rec.709, white D65 (IEC 61966-2-1)
-        c = {3.2404542 * c[0] - 1.5371385 * c[1] - 0.4985314 * c[2],
-             -0.9692660 * c[0] + 1.8760108 * c[1] + 0.0415560 * c[2],
-             0.0556434 * c[0] - 0.2040259 * c[1] + 1.0572252 * c[2]};
+    if (xyz) {
+        const Vec3d rgb = xyz_to_rec709(Vec3d(c));
+        c = {rgb.x, rgb.y, rgb.z};
     }
     begin(key);
     for (const double value : c) append_number(block_.text, value);

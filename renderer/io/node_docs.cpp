@@ -6,25 +6,10 @@
 namespace tessera {
 namespace {
 
-std::string name_of(NodeType type) {
-    switch (type) {
-        case NodeType::scalar:
-            return "number";
-        case NodeType::color:
-            return "colour";
-        case NodeType::vector2:
-            return "vector2";
-        case NodeType::vector3:
-            return "vector3";
-        case NodeType::any:
-            break;
-    }
-    return "any";
-}
-
 std::string initial_of(const NodeInputInfo& input) {
     if (input.name == "texcoord") return "the surface's";
     if (input.name == "position") return "the object's";
+    if (input.name == "normal") return "the surface's";
     const auto number = [](float v) { return params::json(static_cast<double>(v)); };
     const auto& v = input.initial;
     const bool one = input.type == NodeType::scalar || (v[0] == v[1] && v[1] == v[2]);
@@ -45,7 +30,7 @@ std::string nodes_markdown() {
         "MaterialX's where it has the node.\n\n"
         "| node | gives | inputs (default) | what it does |\n|---|---|---|---|\n";
     for (const NodeInfo& node : kNodes) {
-        std::string outputs = name_of(node.output);
+        std::string outputs(name_of(node.output));
         for (const NodeOutputInfo& o : node.outputs()) outputs += ", `" + std::string(o.name) + "`";
         std::string inputs;
         for (const NodeInputInfo& i : node.inputs())

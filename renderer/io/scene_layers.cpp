@@ -40,14 +40,22 @@ void lay(const std::string& key, const Value& value, const LayerHead& head, Mate
         names.emplace_back(info.name);
         if (key != info.name) return;
         known = true;
-        if (!takes_nodes(member))
-            return at.problems.error(value.loc, at.subject + ": " + key + " takes no layers");
         auto& input = material.*member;
         const auto above = nodes.read(value, type_of(member), key, at);
         if (!above) return;
         const NodeValue below = nodes.node_of(input, type_of(member));
         set_input(input, nodes.layer(below, *above, head.mask, head.blend, value.loc));
     });
+    for (const NormalKey& row : kNormalKeys) {
+        names.emplace_back(row.name);
+        if (key != row.name) continue;
+        known = true;
+        NormalInput& input = material.*row.member;
+        const auto above = nodes.read_normal(value, key, at);
+        if (!above) continue;
+        const NodeValue below = nodes.node_of(input, row.takes_maps);
+        set_input(input, nodes.layer(below, *above, head.mask, head.blend, value.loc));
+    }
     if (!known)
         at.problems.error(value.loc,
                           at.subject + ": unknown input '" + key + "'" + did_you_mean(key, names));
@@ -65,6 +73,12 @@ void set_input(ColorInput& input, const NodeValue& value) {
 void set_input(FloatInput& input, const NodeValue& value) {
     input = {};
     input.value = value.node >= 0 ? 1.0f : value.value[0];
+    input.node = value.node;
+    input.output = value.output;
+}
+
+void set_input(NormalInput& input, const NodeValue& value) {
+    input = {};
     input.node = value.node;
     input.output = value.output;
 }

@@ -24,11 +24,6 @@ struct MaterialTarget {
 template <class Input>
 void read_graph(Input MaterialDesc::*member, const Value& value, const Key& key,
                 const ReadContext& at, const MaterialTarget& target) {
-    if (!takes_nodes(member)) {
-        at.problems.error(value.loc,
-                          at.subject + ": " + key.name + " takes numbers and images, no nodes");
-        return;
-    }
     const auto node = target.nodes.read(value, type_of(member), key.name, at);
     if (!node) return;
     set_input(target.material.*member, *node);
@@ -106,18 +101,24 @@ Key input_row(FloatInput MaterialDesc::*member, const OpenPbrInput& info) {
             params::json(double((MaterialDesc{}.*member).value))};
 }
 
-Key normal_input(const char* name, int MaterialDesc::*texture, float MaterialDesc::*scale,
-                 const char* help) {
-    const auto store = [texture, scale](void* object, const Value& value, const Key& key,
-                                        const ReadContext& at) {
+Key normal_input(const NormalKey& normal) {
+    const auto store = [normal](void* object, const Value& value, const Key& key,
+                                const ReadContext& at) {
         const auto& target = *static_cast<MaterialTarget*>(object);
-        if (!is_image(value)) return report_misfit(value, key.name, describe(key.form), at);
-        const TextureEntry entry = read_image(value, normal_texture_keys(), key, at);
-        target.material.*texture = add_texture(value, entry, at, target.reader);
-        target.material.*scale = entry.scale_normal;
+        NormalInput& input = target.material.*normal.member;
+        if (NodeReader::is_graph(value)) {
+            if (const auto node = target.nodes.read_normal(value, key.name, at))
+                set_input(input, *node);
+        } else if (is_image(value) && normal.takes_maps) {
+            const TextureEntry entry = read_image(value, normal_texture_keys(), key, at);
+            input = {add_texture(value, entry, at, target.reader), entry.scale_normal,
+                     entry.convention == NormalConvention::directx};
+        } else {
+            report_misfit(value, key.name, normal.takes_maps ? describe(key.form) : "a node", at);
+        }
     };
     const Form form{.kind = Form::Kind::image, .tables = {&normal_texture_keys().list}};
-    return {name, form, help, store};
+    return {normal.name, form, normal.help, store};
 }
 
 /// A row of a MaterialDesc, for a MaterialTarget.
@@ -169,25 +170,6 @@ Key layers_row() {
     return {"layer", form, "Layers on the material, from the lowest up.", store};
 }
 
-/// An OpenPBR parameter of the standard that has no meaning here yet.
-Key unsupported(const std::string& name, int count) {
-    const auto store = [](void* object, const Value& value, const Key& key, const ReadContext& at) {
-        auto& target = *static_cast<MaterialTarget*>(object);
-        const bool flag = std::holds_alternative<bool>(value.data);
-        if (!is_image(value) && !flag && !plain_input(value, key, at)) return;
-        if (!target.reader.ignored.insert(key.name).second) return;
-        at.problems.warn(value.loc,
-                         at.subject + ": " + key.name + " is not supported yet, ignored");
-    };
-    const Form form =
-        input_form(count, kAnyNumber, count == 3 ? color_texture_keys() : scalar_texture_keys());
-    return {.name = name,
-            .form = form,
-            .help = "Not supported yet, ignored.",
-            .store = store,
-            .supported = false};
-}
-
 std::vector<Key> supported_rows() {
     using M = MaterialDesc;
     std::vector<Key> rows{inherits_row(), nodes_row(), layers_row()};
@@ -203,11 +185,7 @@ std::vector<Key> supported_rows() {
                               "the object's axes."));
     rows.push_back(
         plain_row("geometry_thin_walled", &M::geometry_thin_walled, "A sheet without an inside."));
-    rows.push_back(normal_input("geometry_normal", &M::geometry_normal, &M::geometry_normal_scale,
-                                "Tangent-space normal map, OpenGL handedness (green is up)."));
-    rows.push_back(normal_input(
-        "geometry_coat_normal", &M::geometry_coat_normal, &M::geometry_coat_normal_scale,
-        "The coat's own normal map; without it the coat is even over a bumpy base."));
+    for (const NormalKey& normal : kNormalKeys) rows.push_back(normal_input(normal));
     rows.push_back(plain_row("dielectric_priority", &M::dielectric_priority,
                              "Where solids of glass overlap, the higher number is there.",
                              {.low = -1000, .high = 1000}));
@@ -217,12 +195,7 @@ std::vector<Key> supported_rows() {
 }
 
 const KeySet<MaterialTarget>& material_rows() {
-    static const KeySet<MaterialTarget> keys = [] {
-        KeySet<MaterialTarget> rows{{"material", supported_rows()}};
-        for (const char* name : {"geometry_tangent", "geometry_coat_tangent"})
-            rows.list.keys.push_back(unsupported(name, 3));
-        return rows;
-    }();
+    static const KeySet<MaterialTarget> keys{{"material", supported_rows()}};
     return keys;
 }
 

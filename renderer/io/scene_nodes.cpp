@@ -16,22 +16,6 @@ const NodeInfo& info_of(const NodeDesc& node) {
     return kNodes[static_cast<std::size_t>(node.type)];
 }
 
-std::string name_of(NodeType type) {
-    switch (type) {
-        case NodeType::scalar:
-            return "a number";
-        case NodeType::color:
-            return "a colour";
-        case NodeType::vector2:
-            return "2 numbers";
-        case NodeType::vector3:
-            return "3 numbers";
-        case NodeType::any:
-            break;
-    }
-    return "a value";
-}
-
 // Numbers go everywhere; three numbers are three numbers; else the kinds must agree.
 bool fits(NodeType from, NodeType to) {
     if (to == NodeType::any || from == NodeType::scalar || from == to) return true;
@@ -268,8 +252,9 @@ std::optional<NodeValue> NodeReader::output_of(int node, const Value& table, Nod
     // An image gives a number where one is wanted: its red.
     const bool image = info.op == NodeOp::image || info.op == NodeOp::triplanar;
     if (!fits(type, wanted) && !image) {
-        at.problems.error(table.loc, at.subject + ": node '" + std::string(info.name) + "' gives " +
-                                         name_of(type) + ", wanted is " + name_of(wanted) +
+        at.problems.error(table.loc, at.subject + ": node '" + std::string(info.name) +
+                                         "' gives a " + std::string(name_of(type)) +
+                                         ", wanted is a " + std::string(name_of(wanted)) +
                                          " (see 'extract', 'luminance', 'combine3')");
         return std::nullopt;
     }
@@ -376,6 +361,52 @@ NodeValue NodeReader::node_of(const ColorInput& input, NodeType type) {
     const int index = push(std::move(product));
     types_[index] = type;
     return {{}, index};
+}
+
+NodeValue NodeReader::node_of(const NormalInput& input, bool normal) {
+    if (input.node >= 0) return {{}, input.node, input.output};
+    if (input.texture < 0) {
+        const int own = push(make(normal ? NodeOp::normal : NodeOp::tangent, {}));
+        types_[own] = NodeType::vector3;
+        return {{}, own};
+    }
+    NodeValue texel{{}, image_node(input.texture, false)};
+    if (input.flip_y) {
+        NodeDesc flip = make(NodeOp::remap, {});
+        give(flip, 0, texel);
+        give(flip, 3, {{0, 1, 0}});
+        give(flip, 4, {{1, 0, 1}});
+        texel = {{}, push(std::move(flip))};
+    }
+    NodeDesc map = make(NodeOp::normalmap, {});
+    give(map, 0, texel);
+    give(map, 1, {{input.scale, input.scale, input.scale}});
+    const int index = push(std::move(map));
+    types_[index] = NodeType::vector3;
+    return {{}, index};
+}
+
+std::optional<NodeValue> NodeReader::read_normal(const Value& value, const std::string& key,
+                                                 const ReadContext& at) {
+    if (!value.table()) {
+        report_misfit(value, key, "a normal map or a node", at);
+        return std::nullopt;
+    }
+    if (is_graph(value)) {
+        const auto node = read(value, NodeType::vector3, key, at);
+        if (node && node->node < 0) {
+            at.problems.error(value.loc, at.subject + ": " + key + " takes nodes, no constants");
+            return std::nullopt;
+        }
+        return node;
+    }
+    TextureEntry entry;
+    read_keys(value, normal_texture_keys(), entry, {at.problems, at.subject + ": " + key});
+    const int texture = add_texture(value, entry, at, reader_);
+    if (texture < 0) return std::nullopt;
+    return node_of(
+        NormalInput{texture, entry.scale_normal, entry.convention == NormalConvention::directx},
+        true);
 }
 
 NodeValue NodeReader::node_of(const FloatInput& input, NodeType) {

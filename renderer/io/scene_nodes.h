@@ -26,9 +26,15 @@ public:
     std::optional<NodeValue> read(const Value& value, NodeType wanted, const std::string& key,
                                   const ReadContext& at);
 
+    /// A normal or tangent: a graph, or the image of a normal map.
+    std::optional<NodeValue> read_normal(const Value& value, const std::string& key,
+                                         const ReadContext& at);
+
     /// What an input holds now, as something a node can take.
     NodeValue node_of(const ColorInput& input, NodeType type);
     NodeValue node_of(const FloatInput& input, NodeType type);
+    /// Of nothing the surface's own: its normal or its tangent.
+    NodeValue node_of(const NormalInput& input, bool normal);
     /// value times a number.
     NodeValue product(NodeValue value, float factor, const SourceLoc& loc);
     /// `above` on `below` by a mask and a blend mode.

@@ -57,6 +57,8 @@ const KeySet<TextureEntry>& normal_texture_keys() {
         KeySet<T> rows{{"normal map", placement_rows()}};
         rows.list.keys.push_back(
             key("scale_normal", &T::scale_normal, "Strength of the bumps.", kAtLeast0));
+        rows.list.keys.push_back(choice("convention", &T::convention, {"opengl", "directx"},
+                                        "Where the map's green points: up or down."));
         return rows;
     }();
     return keys;

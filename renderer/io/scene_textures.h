@@ -8,6 +8,9 @@
 
 namespace tessera {
 
+/// Which way green points in a normal map.
+enum class NormalConvention : std::uint8_t { opengl, directx };
+
 /// An image table as it is written.
 struct TextureEntry {
     std::string file;
@@ -22,6 +25,7 @@ struct TextureEntry {
     Channel channel = Channel::automatic;
     bool invert = false;
     float scale_normal = 1;
+    NormalConvention convention = NormalConvention::opengl;
 };
 
 const KeySet<TextureEntry>& color_texture_keys();

@@ -57,16 +57,10 @@ bool sample(const SpotLight& l, const LightReference& ref, Vec2f u, LightSample&
 
 bool sample(const DistantLight& l, const LightReference&, Vec2f u, LightSample& s) {
     s.infinite = true;
-    if (l.one_minus_cos == 0.0f) {
-        s.wi = l.to_light;
-        s.radiance = l.irradiance;
-        s.pdf = 1;
-        s.delta = true;
-        return true;
-    }
-    s.wi = l.frame.to_world(warp_cone(u, l.one_minus_cos));
-    s.radiance = l.radiance;
-    s.pdf = 1.0f / (2.0f * kPi * l.one_minus_cos);
+    s.delta = l.one_minus_cos == 0.0f;
+    s.wi = s.delta ? l.to_light : l.frame.to_world(warp_cone(u, l.one_minus_cos));
+    s.radiance = s.delta ? l.irradiance : l.radiance;
+    s.pdf = s.delta ? 1.0f : 1.0f / (2.0f * kPi * l.one_minus_cos);
     return true;
 }
 
@@ -132,6 +126,7 @@ bool sample(const MeshLight& l, const LightReference& ref, Vec2f u, LightSample&
     const EmissiveFaces::Triangle& t = l.faces->triangles[pick.index];
     const Vec2f b = warp_triangle({pick.remainder, u.y});
     s.material = t.material;
+    s.placement = l.placement;
     s.uv = t.ta + t.tab * b.x + t.tac * b.y;
     Vec3f p = t.a + t.ab * b.x + t.ac * b.y, ab = t.ab, ac = t.ac;
     s.p_error = abs(t.a) * gamma_bound(9) + (abs(t.ab) + abs(t.ac)) * gamma_bound(9);
@@ -163,6 +158,7 @@ void LightSamples::set(int lane, const LightSample& s) {
     delta[lane] = s.delta;
     infinite[lane] = s.infinite;
     material[lane] = s.material;
+    placement[lane] = s.placement;
     uv[lane] = s.uv;
 }
 
@@ -205,6 +201,23 @@ float MeshLight::density_of(std::int32_t material, Vec3f n) const {
 
 std::size_t EmissiveFaces::bytes() const {
     return triangles.capacity() * sizeof(Triangle) + pick.bytes();
+}
+
+LaneMask DistantLight::sample(LaneMask lanes, const SamplePairs& u, LightSamples& out) const {
+    Vec3Lanes wi;
+    for (int i = 0; i < kLanes; ++i) wi.set(i, frame.to_world(warp_cone(u.at(i), one_minus_cos)));
+    LightSample all;
+    tessera::sample(*this, {}, {}, all);
+    for (LaneMask m = lanes; m != 0; m &= m - 1) {
+        const int i = std::countr_zero(m);
+        out.wi.set(i, all.delta ? to_light : wi[i]);
+        out.pdf[i] = all.pdf;
+        out.radiance.set(i, all.radiance);
+        out.delta[i] = all.delta;
+        out.infinite[i] = 1;
+        out.material[i] = -1;
+    }
+    return lanes;
 }
 
 bool sample_light(const Light& light, const LightReference& ref, Vec2f u,

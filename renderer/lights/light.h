@@ -27,7 +27,8 @@ struct LightSample {
     bool delta = false;
     bool infinite = false;  // no point: the light is at infinity
     Vec3f p, p_error, n;    // point on the light, its error bound, its normal (zero for points)
-    std::int32_t material = -1;  // >= 0: radiance comes from this material's emission at uv
+    std::int32_t material = -1;   // >= 0: radiance comes from this material's emission at uv
+    std::uint32_t placement = 0;  // of that mesh
     Vec2f uv;
 };
 
@@ -38,6 +39,7 @@ struct LightSamples {
     float pdf[kLanes];
     std::uint32_t delta[kLanes], infinite[kLanes];
     std::int32_t material[kLanes];
+    std::uint32_t placement[kLanes];
     Lanes<Vec2f> uv;
 
     void set(int lane, const LightSample& s);
@@ -67,6 +69,8 @@ struct DistantLight {
     Color radiance{0.0f};
     bool camera_visible = true;
     Frame frame{to_light};
+    /// As sample_light, for the lanes of a block.
+    LaneMask sample(LaneMask lanes, const SamplePairs& u, LightSamples& out) const;
 };
 
 struct QuadLight {
@@ -111,6 +115,7 @@ struct MeshLight {
     bool placed = false;  // by to_world, which can be inverted; else the faces are in place
     Affinef to_world;
     float determinant = 1, condition = 1;  // of to_world
+    std::uint32_t placement = 0;
     /// pdf per area in place of a point with normal n on a face of the material.
     float density_of(std::int32_t material, Vec3f n) const;
 };

@@ -101,12 +101,14 @@ LaneMask LightSet::sample(LaneMask lanes, const LightReference (&refs)[kLanes],
             const int first = std::countr_zero(rest);
             const Light& light = lights_[picks[first].index];
             LaneMask same = 1u << first;
-            if (const auto* sky = std::get_if<EnvironmentLight>(&light)) {
+            const auto* sky = std::get_if<EnvironmentLight>(&light);
+            const auto* sun = std::get_if<DistantLight>(&light);
+            if (sky || sun) {
                 for (LaneMask m = rest; m != 0; m &= m - 1) {
                     const int i = std::countr_zero(m);
                     if (picks[i].index == picks[first].index) same |= 1u << i;
                 }
-                made |= sky->sample(same, u, out);
+                made |= sky ? sky->sample(same, u, out) : sun->sample(same, u, out);
             } else {
                 LightSample s;
                 if (sample_light(light, refs[first], u.at(first), s)) {

@@ -11,6 +11,7 @@
 
 #include "renderer/core/log.h"
 #include "renderer/core/parallel.h"
+#include "renderer/geometry/find_creases.h"
 #include "renderer/scene/bake.h"
 #include "renderer/scene/emitters.h"
 #include "renderer/scene/flatten.h"
@@ -163,11 +164,14 @@ private:
             ShapeUse& use = uses[{i.kind, i.index}];
             ++use.count;
             use.cutout_override |= i.material >= 0 && facts(i.material).cutout;
+            if (i.material >= 0)
+                use.crease_angle_deg =
+                    std::min(use.crease_angle_deg, facts(i.material).crease_angle_deg);
         }
         for (const FlatInstance& i : instances_) {
             Placement placed;
             placed.material = i.material;
-            placed.to_object = Affinef(inverse(translation(-scene_->origin_) * i.to_world));
+            placed.objects_are_at(translation(-scene_->origin_) * i.to_world);
             ShapeUse& use = uses[{i.kind, i.index}];
             place_shape(i, use, placed);
             add_placement(placed);
@@ -278,9 +282,13 @@ private:
         }
         scene_->geometry_.meshes.push_back(bake_mesh(desc, place, needs, bake_report_));
         Mesh& mesh = scene_->geometry_.meshes.back();
+        float crease_angle_deg = use.crease_angle_deg;
         for (auto& m : mesh.materials) {
             if (m < 0) m = default_material();
+            crease_angle_deg = std::min(crease_angle_deg, facts(m).crease_angle_deg);
         }
+        if (crease_angle_deg < kInfinity)
+            mesh.creases = CreaseTree(find_creases(desc, crease_angle_deg * (kPi / 180.0f)));
         return static_cast<int>(scene_->geometry_.meshes.size()) - 1;
     }
 
@@ -385,6 +393,7 @@ private:
         for (const Mesh& m : g.meshes) {
             s.triangles_stored += m.triangles + 2 * std::uint64_t(m.quads);
             s.memory_geometry += m.bytes();
+            s.memory_creases += m.creases.bytes();
         }
         for (const Placement& p : g.placements) {
             s.instances += p.instanced;

@@ -123,8 +123,13 @@ private:
         const Vec3d n = in_.to_world.normal(Vec3d(at.n));
         const double l = length(n);
         in.n = l > 0 ? Vec3f(n / l) : at.n;
+        const Frame tangent = tangent_frame(at);
+        in.dpdu = Vec3f(in_.to_world.vector(Vec3d(tangent.s)));
+        in.dpdv = Vec3f(in_.to_world.vector(Vec3d(tangent.t)));
+        in.handed = dot(cross(tangent.s, tangent.t), tangent.n) < 0.0f ? -1.0f : 1.0f;
+        in.object_scale = static_cast<float>(1.0 / unit_);
         footprint(site, in);
-        const Vec3f moved = displacement->offset(in, tangent_frame(at), in_.textures);
+        const Vec3f moved = displacement->offset(in, tangent, in_.textures);
         return moved * static_cast<float>(1.0 / unit_);
     }
 

@@ -171,6 +171,7 @@ struct EmitterBuilder {
                                          placed.instanced ? Affined(placed.to_world) : Affined());
         }
         if (light.faces->triangles.empty()) return;
+        light.placement = static_cast<std::uint32_t>(&placed - geometry.placements.data());
         placed.light = next();
         const double emission = emission_of(light);
         add(std::move(light), emission);

@@ -49,6 +49,7 @@ public:
     void operator()(const FloatInput& f) {
         all(f.value, f.texture, f.channel, f.invert, f.node, f.output);
     }
+    void operator()(const NormalInput& n) { all(n.texture, n.scale, n.flip_y, n.node, n.output); }
     void operator()(const NodeValue& v) { all(v.value, v.node, v.output); }
     void operator()(const NodeDesc& n) {
         all(n.type, n.inputs, n.texture, n.color);
@@ -61,9 +62,8 @@ public:
         (*this)(m.name);
         visit_inputs([&](auto member, const OpenPbrInput&) { (*this)(m.*member); });
         all(m.displacement_scale, m.displacement_offset, m.displacement_space);
-        all(m.geometry_thin_walled, m.geometry_normal, m.geometry_normal_scale,
-            m.geometry_coat_normal, m.geometry_coat_normal_scale, m.nodes, m.dielectric_priority,
-            m.use_vertex_color);
+        all(m.geometry_thin_walled, m.geometry_normal, m.geometry_coat_normal, m.geometry_tangent,
+            m.geometry_coat_tangent, m.nodes, m.dielectric_priority, m.use_vertex_color);
     }
     void operator()(const MeshDesc& m) {
         all(m.positions, m.normals, m.uvs, m.colors, m.triangles, m.quads, m.position_index,

@@ -21,6 +21,7 @@ struct ShapeUse {
     int count = 0;
     int shape = -1;
     bool cutout_override = false;
+    float crease_angle_deg = kInfinity;  // asked for by instances' own materials
     Vec3d own_origin;
 };
 

@@ -157,7 +157,7 @@ TEST_CASE("mtl: keys are read in any letter case") {
     const MaterialDesc& m = got.material();
     CHECK(file_name(got, m.base_color.texture) == "a.png");
     CHECK(file_name(got, m.geometry_opacity.texture) == "b.png");
-    CHECK(file_name(got, m.geometry_normal) == "c.png");
+    CHECK(file_name(got, m.geometry_normal.texture) == "c.png");
     CHECK(file_name(got, m.specular_roughness.texture) == "d.png");
     CHECK(got.warnings.empty());
 }
@@ -174,8 +174,8 @@ TEST_CASE("mtl: what is not understood or not supported is told once with its li
 
 TEST_CASE("mtl: a bump map named like a normal map is one, with a note") {
     const LoadedObj got = with_mtl("map_Bump -bm 0.5 wall_Normal.png\n");
-    CHECK(got.material().geometry_normal == 0);
-    CHECK(got.material().geometry_normal_scale == 0.5f);
+    CHECK(got.material().geometry_normal.texture == 0);
+    CHECK(got.material().geometry_normal.scale == 0.5f);
     CHECK(got.noted("taken for a normal map"));
 }
 

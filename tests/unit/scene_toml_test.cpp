@@ -280,9 +280,10 @@ TEST_CASE("scene toml: inputs are numbers, colours or images") {
     CHECK(floor.specular_roughness.channel == Channel::g);
     CHECK(floor.specular_roughness.invert);
     CHECK(floor.specular_roughness.value == 0.5f);
-    CHECK(floor.geometry_normal == floor.specular_roughness.texture);  // equal textures are one
+    CHECK(floor.geometry_normal.texture ==
+          floor.specular_roughness.texture);  // equal textures are one
     CHECK(scene.textures.size() == 2);
-    CHECK(floor.geometry_normal_scale == 2);
+    CHECK(floor.geometry_normal.scale == 2);
     CHECK(floor.emission_color.value == Float3{3, 3, 3});
     CHECK(floor.specular_ior.value == 1.33f);
     CHECK(floor.geometry_thin_walled);
@@ -299,15 +300,13 @@ TEST_CASE("scene toml: a mistyped input names the nearest known one") {
               .find("base_color: unknown key 'fiel' (did you mean 'file'?)") != std::string::npos);
 }
 
-TEST_CASE("scene toml: OpenPBR inputs to come are accepted, checked and reported once") {
+TEST_CASE("scene toml: tangents are given by nodes") {
     const SceneFolder folder;
-    const SceneDesc scene = folder.load(
-        "[material.a]\ngeometry_tangent = [1, 0, 0]\n"
-        "[material.b]\ngeometry_tangent = [0, 1, 0]\ncoat_weight = 0.5");
-    CHECK(contains(scene.warnings,
-                   "s.toml:3:1: material 'a': geometry_tangent is not supported yet, ignored"));
-    CHECK(material(scene, "b").coat_weight.value == 0.5f);
-    CHECK_FALSE(contains(scene.warnings, "material 'b'"));
+    const SceneDesc scene =
+        folder.load("[material.a]\ngeometry_tangent = { type = 'tangent' }\ncoat_weight = 0.5");
+    CHECK(material(scene, "a").geometry_tangent.node == 0);
+    CHECK(folder.failure("[material.a]\ngeometry_tangent = [1, 0, 0]").find("must be a node") !=
+          std::string::npos);
     CHECK(folder.failure("[material.a]\ncoat_weight = 'thick'").find("coat_weight is 'thick'") !=
           std::string::npos);
 }

@@ -1,0 +1,39 @@
+#pragma once
+// What a program may ask of a surface point, whoever looks at it.
+
+#include "renderer/scene/scene.h"
+
+namespace tessera {
+
+/// The part of a ShadeInput that says where a point lies; its normal looks outward.
+inline void place_input(const Scene& scene, const SurfacePoint& s, ShadeInput& in) {
+    const Placement& placed = scene.geometry().placements[s.placement];
+    in.p_object = placed.to_object.point(s.p);
+    in.object_scale = placed.object_scale;
+    in.p_world = Vec3f(Vec3d(s.p) + scene.origin());
+    in.n = s.ns;
+    in.front = true;
+    in.instance = s.placement;
+    in.to_object = &placed.to_object;
+    if (placed.kind == PlacedKind::mesh)
+        in.creases = &scene.geometry().meshes[placed.shape].creases;
+    in.dpdu = s.dpdu, in.dpdv = s.dpdv, in.handed = s.handed;
+}
+
+/// What a sampled point of an emissive mesh sends.
+inline Color emitter_radiance(const Scene& scene, std::int32_t material, std::uint32_t placement,
+                              Vec2f uv, Vec3f p, Vec3f n) {
+    const ShaderProgram& program = scene.program(material);
+    ShadeInput in;
+    in.uv = uv;
+    if (program.facts().emission_geometry || program.facts().opacity_geometry) {
+        SurfacePoint s;
+        s.p = p;
+        s.ng = s.ns = n;
+        s.placement = placement;
+        place_input(scene, s, in);
+    }
+    return program.visible_emission(in, scene.textures());
+}
+
+}  // namespace tessera
