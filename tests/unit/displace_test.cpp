@@ -244,11 +244,17 @@ TEST_CASE("displace: seams, unequal rates and charts that disagree leave no crac
 
 TEST_CASE("displace: a lamp inside of a closed displaced body is not seen through it") {
     SceneDesc s =
-        scene_of(subdivided(sphere_cage(3), 0, Subdivision::catmull_clark, 0), noisy(0.3f));
-    s.materials[0].base_color.value = {0, 0, 0};
-    s.meshes[0].subdivision.edge_length_px = 5;
+        scene_of(subdivided(sphere_cage(4), 0, Subdivision::catmull_clark, 0), moved_by(0));
+    s.meshes[0].subdivision.edge_length_px = 3;
+    // Faces by turns of two materials, of which one stands out: where they meet, each asks for
+    // another height.
+    add(s, moved_by(0.3f));
+    s.meshes[0].materials = {0, 1};
+    for (std::uint32_t f = 0; f < s.meshes[0].quads; ++f)
+        s.meshes[0].face_material.push_back(f % 2);
+    for (MaterialDesc& m : s.materials) m.base_color.value = {0, 0, 0};
     SphereLightDesc lamp;
-    lamp.radius = 0.55;
+    lamp.radius = 0.8;
     lamp.radiance = {1000, 1000, 1000};
     add_light(s, lamp);
     look(s, {0.3, 0.4, 3}, {0, 0, 0});
