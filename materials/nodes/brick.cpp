@@ -134,13 +134,16 @@ Brick brick(Vec2f p, const BrickParams& b, float width) noexcept {
            profile(pitch.y, mortar, rounding)};
 
     const Relief r = relief(g);
-    const float fine = 9.0f / pitch.y;
-    const float grain = within(b.grain, 0.0f, 1.0f) *
-                        fractal2d(at * fine, {.octaves = 4, .diminish = 0.7f}, w * fine);
+    const float fine = 9.0f / pitch.y, broad = 0.25f / pitch.y;
+    const float rough = within(b.grain, 0.0f, 1.0f);
+    const float grain = rough * fractal2d(at * fine, {.octaves = 4, .diminish = 0.7f}, w * fine);
+    // Weather and soot, over several bricks.
+    const float stain =
+        rough * fractal2d(at * broad + Vec2f{3.1f, 8.7f}, {.octaves = 5}, w * broad);
     Brick out;
     out.mortar = clamp01(1.0f - r.brick);
-    out.color =
-        lerp(color_of_bricks(g, b), b.mortar, out.mortar) * std::max(1.0f + 0.5f * grain, 0.0f);
+    out.color = lerp(color_of_bricks(g, b), b.mortar, out.mortar) *
+                (std::max(1.0f + 0.6f * grain, 0.0f) * std::max(1.0f + 0.6f * stain, 0.0f));
     out.height = clamp01(0.05f + 0.87f * r.height + 0.08f * grain);
     out.id = brick_at(g, g.x, g.y);
     return out;

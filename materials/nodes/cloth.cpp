@@ -110,9 +110,11 @@ float mean_height(const Weave& v) {
 // Brightness of a thread, and of the fibres twisted into it; `across` and `along` in threads.
 float shade(const ClothParams& c, float across, float along, float w, float row) {
     const float of_thread = cellnoise2d({across, row}, w) - 0.5f;
-    const float twist = noise2d({across * 5.0f + along * 2.5f, along * 0.7f + row}, w * 5.6f);
+    const FractalParams two{.octaves = 2, .diminish = 0.7f};
+    const float twist =
+        fractal2d({across * 6.0f + along * 3.5f, along * 0.5f + row}, two, w * 7.0f);
     const float sum = 1.0f + within(c.variation, 0.0f, 1.0f) * of_thread +
-                      0.5f * within(c.fibres, 0.0f, 1.0f) * twist;
+                      0.9f * within(c.fibres, 0.0f, 1.0f) * twist;
     return std::max(sum, 0.0f);
 }
 

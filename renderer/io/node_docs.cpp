@@ -28,6 +28,7 @@ std::string nodes_markdown() {
         "scene\nstands in [scene-format.md](scene-format.md#shader-graphs). Names, inputs and "
         "defaults are "
         "MaterialX's where it has the node.\n\n"
+        "![the patterns, by name](patterns.png)\n\n"
         "| node | gives | inputs (default) | what it does |\n|---|---|---|---|\n";
     for (const NodeInfo& node : kNodes) {
         std::string outputs(name_of(node.output));

@@ -64,6 +64,16 @@ void merge(Value& under, Value&& over) {
     under = std::move(over);
 }
 
+/// Puts the texts of a list of the document below in front of those of the one above.
+void join_texts(const Value& under, Value& over, const char* key) {
+    const Value* first = under.find(key);
+    auto* table = std::get_if<Table>(&over.data);
+    const auto second = table ? table->find(key) : Table::iterator();
+    if (!first || !first->list() || !table || second == table->end()) return;
+    if (auto* list = std::get_if<List>(&second->second.data))
+        list->insert(list->begin(), first->list()->begin(), first->list()->end());
+}
+
 class DocumentReader {
 public:
     DocumentReader(const AssetRules& assets, std::vector<std::string>& files)
@@ -86,6 +96,7 @@ public:
         files_.push_back(path);
         Value whole{Table{}, own.loc};
         for (const Value& name : includes(own)) merge(whole, read(resolve(name), name.loc));
+        join_texts(whole, own, "materialx");
         merge(whole, std::move(own));
         open_.pop_back();
         return whole;

@@ -22,6 +22,7 @@ struct SceneReader {
     std::map<std::string, int, std::less<>> textures =
         {};                              // all that makes a texture -> scene.textures
     std::set<std::string> ignored = {};  // keys reported as not supported yet
+    std::map<std::string, MaterialDesc, std::less<>> materialx = {};  // of MaterialX documents
 
     /// The folder that names written at loc are relative to.
     std::string folder_of(const SourceLoc& loc) const;

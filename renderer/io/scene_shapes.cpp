@@ -72,6 +72,7 @@ const KeySet<DiscEntry>& disc_rows() {
 class MeshLoader {
 public:
     MeshLoader(const Value& document, SceneReader& reader) : reader_(reader) {
+        for (const auto& [name, material] : reader.materialx) defined_.insert(name);
         const Value* materials = document.find("material");
         if (!materials || !materials->table()) return;
         for (const auto& [name, table] : *materials->table()) {

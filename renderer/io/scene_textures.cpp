@@ -78,7 +78,8 @@ int add_texture(const Value& table, const TextureEntry& entry, const ReadContext
     TextureDesc texture;
     texture.file = found.path.empty() ? reader.folder_of(loc) + "/" + entry.file : found.path;
     texture.color_space = entry.color_space;
-    texture.wrap_u = texture.wrap_v = entry.wrap;
+    texture.wrap_u = entry.wrap;
+    texture.wrap_v = entry.wrap_v.value_or(entry.wrap);
     texture.scale = entry.scale;
     texture.offset = entry.offset;
     texture.gain = entry.gain;

@@ -17,6 +17,7 @@ struct TextureEntry {
     Float2 scale{1, 1};
     Float2 offset{0, 0};
     Wrap wrap = Wrap::repeat;
+    std::optional<Wrap> wrap_v = {};  // along v, where it differs
     std::string color_space;
     float gain = 1;
     float bias = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "renderer/io/mtlx.h"
 #include "renderer/io/scene_shapes.h"
 
 namespace tessera {
@@ -9,7 +10,7 @@ namespace {
 
 struct Root {
     int version = 0;
-    std::vector<std::string> include;
+    std::vector<std::string> include, materialx;
 };
 
 /// A row for a table that a part of the reader reads by itself.
@@ -41,6 +42,8 @@ const KeySet<Root>& root_rows() {
                        "A shape or group, placed once or many times."),
              table_row("light", Kind::tables, light_keys(), "A light."),
              table_row("material", Kind::named_tables, {&material_keys()}, "OpenPBR Surface."),
+             key("materialx", &Root::materialx,
+                 "MaterialX documents whose materials the scene may name."),
          }}};
     return keys;
 }
@@ -100,7 +103,9 @@ SceneDesc read_scene(Value document, const std::string& path, const std::string&
     SceneReader reader{scene, problems, assets, folder};
     ShapeNames names;
     read_settings(document, reader);
+    read_materialx(document, reader);
     load_meshes(document, reader, names);
+    place_materialx(reader);
     read_materials(document, reader);
     read_shapes(document, reader, names);
     read_lights(document, reader);

@@ -57,3 +57,6 @@ find_path(DOCTEST_INCLUDE doctest/doctest.h)
 
 add_library(tessera_xxhash INTERFACE)
 tessera_pkg(tessera_xxhash libxxhash)
+
+add_library(tessera_pugixml INTERFACE)
+tessera_pkg(tessera_pugixml pugixml)
