@@ -7,6 +7,7 @@
 #include "materials/lobe.h"
 #include "materials/relief.h"
 #include "materials/surface/params_of.h"
+#include "materials/texel.h"
 #include "renderer/api/openpbr_inputs.h"
 #include "renderer/core/sampler.h"
 
@@ -22,24 +23,6 @@ Color read(const ColorInput& input, const ShadeInput& in, const TextureStore* st
         c *= Color{t[0], t[1], t[2]};
     }
     return c;
-}
-
-float channel_of(const Texel& t, Channel channel) {
-    switch (channel) {
-        case Channel::r:
-            return t[0];
-        case Channel::g:
-            return t[1];
-        case Channel::b:
-            return t[2];
-        case Channel::a:
-            return t[3];
-        case Channel::luminance:
-            return luminance({t[0], t[1], t[2]});
-        case Channel::automatic:
-            break;
-    }
-    return t[0];
 }
 
 // Opacity comes from alpha where an image has one.
@@ -64,11 +47,16 @@ bool one(const FloatInput& input) { return input.value == 1.0f && !input.varies(
 // Calls visit(texture index, use) for every input; Material is MaterialDesc, const or not.
 template <class Material, class Visit>
 void visit_textures(Material& m, Visit visit) {
-    visit_openpbr([&](auto member, const OpenPbrInput&) {
-        auto& input = m.*member;
-        constexpr bool kColor = std::is_same_v<std::remove_cvref_t<decltype(input)>, ColorInput>;
-        visit(input.texture, kColor ? TextureUse::color : TextureUse::data);
-    });
+    const auto read_as = [&](TextureUse color) {
+        return [&visit, &m, color](auto member, const OpenPbrInput&) {
+            auto& input = m.*member;
+            constexpr bool kColor =
+                std::is_same_v<std::remove_cvref_t<decltype(input)>, ColorInput>;
+            visit(input.texture, kColor ? color : TextureUse::data);
+        };
+    };
+    visit_openpbr(read_as(TextureUse::color));
+    visit_displacement(read_as(TextureUse::data));
     visit(m.geometry_normal.texture, TextureUse::data);
     visit(m.geometry_coat_normal.texture, TextureUse::data);
     for (auto& node : m.nodes)
@@ -84,7 +72,7 @@ void mark(const MaterialDesc& m, int node, std::vector<bool>& used) {
 // Nodes that no input asks for lose their images.
 void forget_unused_nodes(MaterialDesc& m) {
     std::vector<bool> used(m.nodes.size(), false);
-    visit_openpbr([&](auto member, const OpenPbrInput&) { mark(m, (m.*member).node, used); });
+    visit_inputs([&](auto member, const OpenPbrInput&) { mark(m, (m.*member).node, used); });
     for (const NormalInput* input : {&m.geometry_normal, &m.geometry_coat_normal,
                                      &m.geometry_tangent, &m.geometry_coat_tangent})
         mark(m, input->node, used);
@@ -97,8 +85,10 @@ void drop(Inputs&... inputs) {
     ((inputs.texture = inputs.node = -1), ...);
 }
 
-// Inputs that cannot reach the result lose their textures: they are then never loaded.
-MaterialDesc folded(MaterialDesc m) {
+// Inputs that cannot reach the result lose their textures: they are then never loaded. Displacement
+// is over before anything is shaded.
+MaterialDesc folded(MaterialDesc m, bool displaced = false) {
+    if (!displaced) drop(m.displacement, m.vector_displacement);
     if (zero(m.emission_luminance) || max_component(color_of(m.emission_color.value)) == 0.0f) {
         m.emission_luminance = {0};
         drop(m.emission_color);
@@ -158,8 +148,8 @@ MaterialDesc remapped(MaterialDesc desc, std::span<const int> to) {
 }
 
 void collect_textures(const MaterialDesc& desc, std::vector<TextureUse>& use,
-                      std::vector<bool>& read) {
-    const MaterialDesc kept = folded(desc);
+                      std::vector<bool>& read, bool displaced) {
+    const MaterialDesc kept = folded(desc, displaced);
     visit_textures(kept, [&](int texture, TextureUse as) {
         if (texture < 0) return;
         if (!read[texture]) use[texture] = as;

@@ -127,8 +127,8 @@ private:
 /// reads it).
 MaterialDesc remapped(MaterialDesc desc, std::span<const int> to);
 
-/// Which textures a material reads, and as what.
+/// Which textures a material reads, and as what. displaced: its displacement is asked for too.
 void collect_textures(const MaterialDesc& desc, std::vector<TextureUse>& use,
-                      std::vector<bool>& read);
+                      std::vector<bool>& read, bool displaced = false);
 
 }  // namespace tessera

@@ -92,4 +92,24 @@ void visit_openpbr(Visit visit) {
           "Height over the surface in the object's units, for its normal only.");
 }
 
+/// Those that move the surface before it is traced.
+template <class Visit>
+void visit_displacement(Visit visit) {
+    using M = MaterialDesc;
+    constexpr double kMany = 1e10;
+    visit(&M::displacement, OpenPbrInput{"displacement", -kMany, kMany,
+                                         "Height along the normal, times displacement_scale; of "
+                                         "meshes with subdivision."});
+    visit(&M::vector_displacement,
+          OpenPbrInput{"vector_displacement", -kMany, kMany,
+                       "Three numbers, times displacement_scale, in displacement_space."});
+}
+
+/// All of the above.
+template <class Visit>
+void visit_inputs(Visit visit) {
+    visit_openpbr(visit);
+    visit_displacement(visit);
+}
+
 }  // namespace tessera

@@ -41,6 +41,16 @@ struct LeftOut {
     std::string why;   // "no image is read"
 };
 
+/// What a subdivided mesh became. Bounds in its own coordinates.
+struct SubdivisionStatistics {
+    std::string mesh;
+    std::uint64_t cage_faces = 0, triangles = 0, vertices = 0;
+    std::uint64_t bytes_surface = 0, bytes_dicing = 0;  // used while it was made
+    std::uint64_t non_finite = 0;                       // vertices left where they were
+    double seconds = 0;
+    std::array<Double3, 2> before{}, after{};  // displacement
+};
+
 /// What a run did and cost. Times are wall seconds.
 struct Statistics {
     std::string version, scene, kernel, isa, integrator;
@@ -59,6 +69,7 @@ struct Statistics {
     std::array<std::uint64_t, kInvalidCauses> invalid{};
     std::string first_invalid;  // "radiance at pixel 312,80 sample 17"
     std::uint64_t half_clamped = 0, half_non_finite = 0;
+    std::vector<SubdivisionStatistics> subdivision;
     std::vector<LeftOut> left_out;
     std::vector<std::string> warnings, notes;
     bool complete = true;

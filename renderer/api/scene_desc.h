@@ -135,6 +135,9 @@ struct ReflectionMapDesc {
     std::optional<std::array<Double3, 2>> box;
 };
 
+/// Of vector displacement: tangent along u, across it, normal; or the object's axes.
+enum class DisplacementSpace : std::uint8_t { tangent, object };
+
 /// OpenPBR Surface 1.1 with its own names, units and defaults.
 struct MaterialDesc {
     std::string name;
@@ -193,6 +196,14 @@ struct MaterialDesc {
 
     std::vector<NodeDesc> nodes;  // what inputs refer to
 
+    // Moves the surface, of meshes that are subdivided, by scale * displacement + offset along its
+    // normal and by scale * vector_displacement; scene units.
+    FloatInput displacement{0};
+    float displacement_scale = 1;
+    float displacement_offset = 0;
+    ColorInput vector_displacement{{0, 0, 0}};
+    DisplacementSpace displacement_space = DisplacementSpace::tangent;
+
     int dielectric_priority = 0;    // of nested glass the higher number fills the overlap
     bool use_vertex_color = false;  // base_color is multiplied by the mesh's vertex colours
     std::optional<ReflectionMapDesc> reflection_map;
@@ -204,6 +215,26 @@ inline constexpr float kLumensPerWatt = 179.0f;
 
 // ---- shapes
 // ---------------------------------------------------------------------------------------
+
+/// linear: cut up, but of the same shape.
+enum class Subdivision : std::uint8_t { none, linear, catmull_clark };
+/// What becomes of a surface's open edges: smooth curves that end in its corners, smooth all
+/// around, or straight as they are.
+enum class SubdivisionBoundary : std::uint8_t { pin_corners, smooth, pin };
+
+/// Into how many pieces a mesh is cut before it is displaced. Every edge is cut by its own rate:
+/// `rate` if it is not 0, else by its length and `edge_length` if that is not 0, else by its length
+/// in the picture.
+struct SubdivisionDesc {
+    SourceLoc loc;
+    Subdivision scheme = Subdivision::none;
+    SubdivisionBoundary boundary = SubdivisionBoundary::pin_corners;
+    int rate = 0;
+    double edge_length = 0;     // scene units
+    double edge_length_px = 2;  // pixels of the full frame, at the nearest instance
+    int max_rate = 256;
+    int max_triangles = 20'000'000;
+};
 
 /// Triangles and quads. Faces are numbered triangles first, then quads, each in file order.
 /// Index arrays hold 3 entries per triangle, then 4 per quad. An empty normal_index or uv_index
@@ -224,6 +255,7 @@ struct MeshDesc {
     std::vector<int> materials;                // slot -> SceneDesc::materials
     std::vector<std::uint32_t> face_object;    // per face -> object_names; empty: 0 for all
     std::vector<std::string> object_names;     // OBJ 'o', else 'g', else the file's stem
+    SubdivisionDesc subdivision;
 };
 
 struct SphereDesc {

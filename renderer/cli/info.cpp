@@ -27,6 +27,14 @@ std::string text_of(const Scene& scene) {
                    s.height, s.spp, s.integrator);
     fmt::format_to(add, "  geometry   {} triangles stored, {} instanced, {} instances\n",
                    s.triangles_stored, s.triangles_instanced, s.instances);
+    for (const SubdivisionStatistics& d : s.subdivision) {
+        fmt::format_to(add,
+                       "  subdivided mesh '{}': {} faces to {} triangles in {:.3g} s ({} while "
+                       "made); y from {:.6g}..{:.6g} to {:.6g}..{:.6g}\n",
+                       d.mesh, d.cage_faces, d.triangles, d.seconds,
+                       mib(d.bytes_surface + d.bytes_dicing), d.before[0][1], d.before[1][1],
+                       d.after[0][1], d.after[1][1]);
+    }
     fmt::format_to(add, "  size       {:.6g} x {:.6g} x {:.6g}", size.x, size.y, size.z);
     const Vec3d o = scene.origin();
     if (!(o == Vec3d{}))

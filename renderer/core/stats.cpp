@@ -37,6 +37,19 @@ std::string to_json(const Statistics& s) {
     invalid["first"] = s.first_invalid;
     ordered_json left_out = ordered_json::array();
     for (const LeftOut& l : s.left_out) left_out.push_back({{"what", l.what}, {"why", l.why}});
+    ordered_json subdivision = ordered_json::array();
+    for (const SubdivisionStatistics& d : s.subdivision) {
+        subdivision.push_back({{"mesh", d.mesh},
+                               {"cage_faces", d.cage_faces},
+                               {"triangles", d.triangles},
+                               {"vertices", d.vertices},
+                               {"bytes_surface", d.bytes_surface},
+                               {"bytes_dicing", d.bytes_dicing},
+                               {"seconds", d.seconds},
+                               {"non_finite", d.non_finite},
+                               {"bounds_before", d.before},
+                               {"bounds_after", d.after}});
+    }
     const ordered_json j = {
         {"format", 1},
         {"version", s.version},
@@ -65,6 +78,7 @@ std::string to_json(const Statistics& s) {
           {"triangles_instanced", s.triangles_instanced},
           {"instances", s.instances},
           {"lights", s.lights}}},
+        {"subdivision", subdivision},
         {"memory_bytes",
          {{"peak", s.memory_peak},
           {"geometry", s.memory_geometry},

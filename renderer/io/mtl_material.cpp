@@ -222,6 +222,11 @@ void Mapper::maps() {
         out_.fuzz_weight.channel = channel_of(v_.map_ps);
         if (out_.fuzz_weight.texture >= 0) out_.fuzz_weight.value = v_.ps > 0 ? v_.ps : 1;
     }
+    if (has("disp")) {
+        out_.displacement.texture = texture("disp", v_.disp);
+        out_.displacement.channel = channel_of(v_.disp);
+        out_.displacement.value = out_.displacement.texture >= 0 ? 1.0f : 0.0f;
+    }
     const bool bump_is_normal = to_lower(v_.bump.file).find("norm") != std::string::npos;
     if (has("bump") && !bump_is_normal) {
         context_->tally->add("not supported yet, ignored:", line("bump"), "bump (height) maps");

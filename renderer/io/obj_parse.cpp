@@ -112,6 +112,7 @@ MtlValues parse_mtl(const std::string& text) {
     out.map_ps = texture(m.sheen_texname, m.sheen_texopt);
     out.norm = texture(m.normal_texname, m.normal_texopt);
     out.bump = texture(m.bump_texname, m.bump_texopt);
+    out.disp = texture(m.displacement_texname, m.displacement_texopt);
     return out;
 }
 

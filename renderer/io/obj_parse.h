@@ -48,7 +48,7 @@ struct MtlValues {
     float ns = 0, ni = 0, d = 1;
     int illum = 0;
     float pr = 0, pm = 0, aniso = 0, ps = 0, pc = 0, pcr = 0;
-    MtlTexture map_kd, map_ks, map_ke, map_d, map_pr, map_pm, map_ps, norm, bump;
+    MtlTexture map_kd, map_ks, map_ke, map_d, map_pr, map_pm, map_ps, norm, bump, disp;
 };
 
 /// Parses the lines of one material (without newmtl).

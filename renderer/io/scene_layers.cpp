@@ -1,7 +1,5 @@
 #include "renderer/io/scene_layers.h"
 
-#include <type_traits>
-
 #include "renderer/api/openpbr_inputs.h"
 #include "renderer/io/nearest_name.h"
 #include "renderer/io/params.h"
@@ -38,15 +36,14 @@ void lay(const std::string& key, const Value& value, const LayerHead& head, Mate
          NodeReader& nodes, const ReadContext& at) {
     bool known = false;
     std::vector<std::string> names{"name", "mask", "opacity", "blend"};
-    visit_openpbr([&](auto member, const OpenPbrInput& info) {
+    visit_inputs([&](auto member, const OpenPbrInput& info) {
         names.emplace_back(info.name);
         if (key != info.name) return;
         known = true;
         auto& input = material.*member;
-        constexpr bool kColor = std::is_same_v<std::remove_cvref_t<decltype(input)>, ColorInput>;
-        const auto above = nodes.read(value, kColor ? NodeType::color : NodeType::scalar, key, at);
+        const auto above = nodes.read(value, type_of(member), key, at);
         if (!above) return;
-        const NodeValue below = nodes.node_of(input);
+        const NodeValue below = nodes.node_of(input, type_of(member));
         set_input(input, nodes.layer(below, *above, head.mask, head.blend, value.loc));
     });
     for (const NormalKey& row : kNormalKeys) {

@@ -9,6 +9,12 @@ namespace tessera {
 void read_material_layers(const Value& layers, MaterialDesc& material, NodeReader& nodes,
                           const ReadContext& at);
 
+/// What an input takes.
+inline NodeType type_of(FloatInput MaterialDesc::*) { return NodeType::scalar; }
+inline NodeType type_of(ColorInput MaterialDesc::*member) {
+    return member == &MaterialDesc::vector_displacement ? NodeType::vector3 : NodeType::color;
+}
+
 /// Puts a value or a node into an input.
 void set_input(ColorInput& input, const NodeValue& value);
 void set_input(FloatInput& input, const NodeValue& value);

@@ -25,9 +25,7 @@ struct MaterialTarget {
 template <class Input>
 void read_graph(Input MaterialDesc::*member, const Value& value, const Key& key,
                 const ReadContext& at, const MaterialTarget& target) {
-    constexpr bool kScalar = std::is_same_v<Input, FloatInput>;
-    const auto node =
-        target.nodes.read(value, kScalar ? NodeType::scalar : NodeType::color, key.name, at);
+    const auto node = target.nodes.read(value, type_of(member), key.name, at);
     if (!node) return;
     set_input(target.material.*member, *node);
 }
@@ -124,16 +122,26 @@ Key normal_input(const NormalKey& normal) {
     return {normal.name, form, normal.help, store};
 }
 
-/// A row whose member is plain.
-template <class M>
-Key plain_row(const std::string& name, M MaterialDesc::*member, const std::string& help,
-              const Limits& limits = kAnyNumber) {
-    Key row = key(name, member, help, limits);
+/// A row of a MaterialDesc, for a MaterialTarget.
+Key of_target(Key row) {
     row.store = [inner = row.store](void* object, const Value& value, const Key& k,
                                     const ReadContext& at) {
         inner(&static_cast<MaterialTarget*>(object)->material, value, k, at);
     };
     return row;
+}
+
+/// A row whose member is plain.
+template <class M>
+Key plain_row(const std::string& name, M MaterialDesc::*member, const std::string& help,
+              const Limits& limits = kAnyNumber) {
+    return of_target(key(name, member, help, limits));
+}
+
+template <class E>
+Key choice_row(const std::string& name, E MaterialDesc::*member, std::vector<std::string> words,
+               const std::string& help) {
+    return of_target(choice(name, member, std::move(words), help));
 }
 
 /// inherits is read before all else; here it only has its place in the list.
@@ -177,8 +185,16 @@ Key reflection_map_row() {
 std::vector<Key> supported_rows() {
     using M = MaterialDesc;
     std::vector<Key> rows{inherits_row(), nodes_row(), layers_row()};
-    visit_openpbr(
+    visit_inputs(
         [&](auto member, const OpenPbrInput& info) { rows.push_back(input_row(member, info)); });
+    rows.push_back(plain_row("displacement_scale", &M::displacement_scale,
+                             "Scene units that a displacement of 1 comes to."));
+    rows.push_back(plain_row("displacement_offset", &M::displacement_offset,
+                             "Scene units added to the height: -scale / 2 for a map whose middle "
+                             "grey means no displacement."));
+    rows.push_back(choice_row("displacement_space", &M::displacement_space, {"tangent", "object"},
+                              "Of vector_displacement: along u, across it and along the normal; or "
+                              "the object's axes."));
     rows.push_back(
         plain_row("geometry_thin_walled", &M::geometry_thin_walled, "A sheet without an inside."));
     for (const NormalKey& normal : kNormalKeys) rows.push_back(normal_input(normal));

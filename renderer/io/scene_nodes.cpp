@@ -220,7 +220,7 @@ bool NodeReader::read_image(const Value& table, NodeType wanted, NodeDesc& node,
     TextureEntry entry;
     read_keys(own, color_texture_keys(), entry, at);
     if (entry.file.empty()) return false;
-    node.color = wanted != NodeType::scalar;
+    node.color = wanted == NodeType::color || wanted == NodeType::any;
     node.texture = add_texture(own, entry, at, reader_);
     return true;
 }
@@ -352,14 +352,14 @@ int NodeReader::image_node(int texture, bool color) {
     return index;
 }
 
-NodeValue NodeReader::node_of(const ColorInput& input) {
+NodeValue NodeReader::node_of(const ColorInput& input, NodeType type) {
     if (input.node >= 0) return {{}, input.node, input.output};
     if (input.texture < 0) return {input.value};
     NodeDesc product = make(NodeOp::multiply, {});
-    give(product, 0, {{}, image_node(input.texture, true)});
+    give(product, 0, {{}, image_node(input.texture, type == NodeType::color)});
     give(product, 1, {input.value});
     const int index = push(std::move(product));
-    types_[index] = NodeType::color;
+    types_[index] = type;
     return {{}, index};
 }
 
@@ -409,7 +409,7 @@ std::optional<NodeValue> NodeReader::read_normal(const Value& value, const std::
         true);
 }
 
-NodeValue NodeReader::node_of(const FloatInput& input) {
+NodeValue NodeReader::node_of(const FloatInput& input, NodeType) {
     const Float3 value{input.value, input.value, input.value};
     if (input.node >= 0) return {{}, input.node, input.output};
     if (input.texture < 0) return {value};

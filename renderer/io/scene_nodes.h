@@ -31,8 +31,8 @@ public:
                                          const ReadContext& at);
 
     /// What an input holds now, as something a node can take.
-    NodeValue node_of(const ColorInput& input);
-    NodeValue node_of(const FloatInput& input);
+    NodeValue node_of(const ColorInput& input, NodeType type);
+    NodeValue node_of(const FloatInput& input, NodeType type);
     /// Of nothing the surface's own: its normal or its tangent.
     NodeValue node_of(const NormalInput& input, bool normal);
     /// value times a number.

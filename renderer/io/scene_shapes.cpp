@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "renderer/io/obj.h"
+#include "renderer/io/scene_subdivision.h"
 
 namespace tessera {
 namespace {
@@ -11,6 +12,7 @@ namespace {
 struct MeshEntry {
     CommonEntry common;
     std::string file;
+    SubdivisionDesc subdivision;
 };
 
 struct SphereEntry {
@@ -24,10 +26,14 @@ struct DiscEntry {
 };
 
 const KeySet<MeshEntry>& mesh_rows() {
-    static const auto keys = rows_with_common<MeshEntry>(
-        "mesh",
-        {key("file", &MeshEntry::file, "An OBJ file; without a name the mesh is called after it.")
-             .must()});
+    static const auto keys = [] {
+        auto rows = rows_with_common<MeshEntry>(
+            "mesh", {key("file", &MeshEntry::file,
+                         "An OBJ file; without a name the mesh is called after it.")
+                         .must()});
+        add_part(rows, subdivision_rows(), &MeshEntry::subdivision);
+        return rows;
+    }();
     return keys;
 }
 
@@ -76,17 +82,34 @@ public:
         }
     }
 
-    /// The mesh of a file, loaded once however many [[mesh]] name it; -1 after reporting.
-    int load(const std::string& file, const SourceLoc& loc, const ReadContext& at) {
+    /// The mesh of a file, loaded once however many [[mesh]] name it, and kept once for those who
+    /// have it subdivided alike; -1 after reporting.
+    int load(const std::string& file, const SubdivisionDesc& subdivision, const SourceLoc& loc,
+             const ReadContext& at) {
         const AssetPath found = reader_.find(file, loc);
         if (!found.note.empty()) at.problems.note(loc, at.subject + ": " + found.note);
         if (found.path.empty()) {
             at.problems.error(loc, at.subject + ": file '" + file + "' " + found.reason);
             return -1;
         }
-        const auto [entry, is_new] = loaded_.emplace(found.path, -1);
-        if (is_new) entry->second = load_new(found.path, loc, at);
-        return entry->second;
+        const auto [entry, is_new] = loaded_.try_emplace(found.path);
+        std::vector<int>& forms = entry->second;
+        std::vector<MeshDesc>& meshes = reader_.scene.meshes;
+        if (is_new) {
+            const int index = load_new(found.path, loc, at);
+            if (index < 0) return -1;
+            meshes[static_cast<std::size_t>(index)].subdivision = subdivision;
+            forms.push_back(index);
+        }
+        if (forms.empty()) return -1;
+        for (const int index : forms)
+            if (alike(meshes[static_cast<std::size_t>(index)].subdivision, subdivision))
+                return index;
+        MeshDesc other = meshes[static_cast<std::size_t>(forms.front())];
+        other.subdivision = subdivision;
+        forms.push_back(static_cast<int>(meshes.size()));
+        meshes.push_back(std::move(other));
+        return forms.back();
     }
 
 private:
@@ -102,8 +125,8 @@ private:
     }
 
     SceneReader& reader_;
-    std::set<std::string> defined_;  // materials of the scene file
-    std::map<std::string, int> loaded_;
+    std::set<std::string> defined_;                   // materials of the scene file
+    std::map<std::string, std::vector<int>> loaded_;  // path -> its meshes, by subdivision
 };
 
 void read_spheres(const Value& document, SceneReader& reader, ShapeNames& names) {
@@ -155,8 +178,12 @@ void load_meshes(const Value& document, SceneReader& reader, ShapeNames& names) 
         read_keys(table, mesh_rows(), entry, at);
         const bool named = !entry.common.name.empty();
         if (!named) entry.common.name = std::filesystem::path(entry.file).stem().string();
+        check_subdivision(table, entry.subdivision, at);
         int index = -1;
-        if (!entry.file.empty()) index = loader.load(entry.file, table.find("file")->loc, at);
+        if (!entry.file.empty())
+            index = loader.load(entry.file, entry.subdivision, table.find("file")->loc, at);
+        if (index >= 0 && entry.subdivision.scheme != Subdivision::none)
+            reader.scene.meshes[static_cast<std::size_t>(index)].name = entry.common.name;
         add_named(table, entry.common, {ShapeKind::mesh, index}, named, at, names);
     }
 }

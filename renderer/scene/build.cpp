@@ -19,6 +19,7 @@
 #include "renderer/scene/map_file.h"
 #include "renderer/scene/opacity.h"
 #include "renderer/scene/placement.h"
+#include "renderer/scene/subdivision.h"
 
 namespace tessera {
 
@@ -38,6 +39,7 @@ public:
         find_used_materials();
         compile_materials();
         place_origin();
+        if (any_subdivided(desc_, instances_)) subdivide();
         place_shapes();
         make_lights();
         if (desc_.camera.projection != Projection::perspective && desc_.camera.aperture_radius > 0)
@@ -84,8 +86,9 @@ private:
         const std::size_t n = desc_.textures.size();
         std::vector<TextureUse> use(n, TextureUse::color);
         std::vector<bool> read(n, false);
+        const std::vector<bool> displaced = displaced_materials(desc_, instances_, problems_);
         for (std::size_t i = 0; i < desc_.materials.size(); ++i) {
-            if (used_[i]) collect_textures(desc_.materials[i], use, read);
+            if (used_[i]) collect_textures(desc_.materials[i], use, read, displaced[i]);
         }
         std::vector<TextureRequest> requests;
         std::vector<int> remap(n, -1);
@@ -102,8 +105,21 @@ private:
                                                                problems_, nullptr, textures);
         }
         textures_left_out_ = n - requests.size();
-        for (const MaterialDesc& m : desc_.materials)
-            scene_->programs_.emplace_back(remapped(m, remap));
+        for (std::size_t i = 0; i < desc_.materials.size(); ++i) {
+            const MaterialDesc m = remapped(desc_.materials[i], remap);
+            scene_->programs_.emplace_back(m);
+            displacements_.push_back(displaced[i] ? Displacement(m) : Displacement());
+        }
+    }
+
+    // By the camera that frames what is there before: what it frames in the end is not known yet.
+    void subdivide() {
+        const Camera camera(desc_.camera, desc_.film.width, desc_.film.height, scene_->origin_,
+                            scene_->bounds_min_, scene_->bounds_max_);
+        scene_->statistics_.subdivision = subdivide_meshes(
+            {desc_, instances_, displacements_, scene_->textures_.get(),
+             view_scale(camera, scene_->origin_), options_.threads, options_.isa, problems_});
+        place_origin();
     }
 
     const ColorSpaces& colors() {
@@ -467,6 +483,7 @@ private:
     std::shared_ptr<Scene> scene_;
     std::vector<FlatInstance> instances_;
     std::vector<bool> used_;
+    std::vector<Displacement> displacements_;  // per material
     std::size_t textures_left_out_ = 0;
     BakeReport bake_report_;
 };

@@ -24,6 +24,7 @@ public:
     float cone_width() const noexcept { return footprint_; }
     float cone_spread() const noexcept { return spread_; }
     bool has_lens() const noexcept { return aperture_ > 0.0f; }
+    Vec3f position() const noexcept { return position_; }
     /// Of a point: along the axis, or the distance where the picture shows all directions.
     float depth(Vec3f p) const noexcept {
         return shows_all_directions(projection_) ? length(p - position_)

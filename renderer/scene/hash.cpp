@@ -62,7 +62,8 @@ public:
     }
     void operator()(const MaterialDesc& m) {
         (*this)(m.name);
-        visit_openpbr([&](auto member, const OpenPbrInput&) { (*this)(m.*member); });
+        visit_inputs([&](auto member, const OpenPbrInput&) { (*this)(m.*member); });
+        all(m.displacement_scale, m.displacement_offset, m.displacement_space);
         all(m.geometry_thin_walled, m.geometry_normal, m.geometry_coat_normal, m.geometry_tangent,
             m.geometry_coat_tangent, m.nodes, m.dielectric_priority, m.use_vertex_color,
             m.reflection_map);
@@ -75,6 +76,8 @@ public:
         all(m.positions, m.normals, m.uvs, m.colors, m.triangles, m.quads, m.position_index,
             m.normal_index, m.uv_index, m.face_material, m.materials, m.face_object,
             m.object_names);
+        const SubdivisionDesc& s = m.subdivision;
+        all(s.scheme, s.boundary, s.rate, s.edge_length, s.edge_length_px, s.max_rate);
     }
     void operator()(const SphereDesc& s) { all(s.center, s.radius, s.material); }
     void operator()(const DiscDesc& d) { all(d.center, d.normal, d.radius, d.material); }

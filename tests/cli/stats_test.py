@@ -10,6 +10,12 @@ try:
 except ImportError:
     jsonschema = None
 
+SUBDIVIDED = SCENE_TOML.replace(
+    'file = "triangles.obj"',
+    'file = "triangles.obj"\n    subdivision = "linear"\n    subdivision_rate = 4\n    material = "raised"',
+) + """[material.raised]
+    displacement = 1.5
+    """
 SCHEMA = SOURCE / "docs" / "stats.schema.json"
 
 
@@ -31,6 +37,20 @@ class Stats(TesseraTest):
         for broken in ({}, {**info, "spp": -1}, {**info, "sp": 1}, {k: v for k, v in info.items() if k != "rays"}):
             with self.assertRaises(jsonschema.ValidationError):
                 jsonschema.validate(broken, schema)
+
+    @unittest.skipUnless(jsonschema, "python3-jsonschema is not installed")
+    def test_a_subdivided_mesh_fits_the_schema_and_is_described(self):
+        tree = self.statistics(toml=SUBDIVIDED)
+        jsonschema.validate(tree, json.loads(SCHEMA.read_text()))
+        (mesh,) = tree["subdivision"]
+        self.assertEqual(mesh["mesh"], "triangles")
+        self.assertEqual(mesh["cage_faces"], 3)
+        # Three patches of 2 x 2 quads for each of three triangles.
+        self.assertEqual(mesh["triangles"], 3 * 3 * 2 * 2 * 2)
+        self.assertEqual(tree["geometry"]["triangles_stored"], mesh["triangles"] + 2)  # the light's
+        self.assertGreater(mesh["bounds_after"][1][1], mesh["bounds_before"][1][1])
+        text = self.expect(0, "info", "scene.toml").out
+        self.assertIn("subdivided mesh 'triangles': 3 faces to 72 triangles", text)
 
     def test_has_what_a_farm_looks_for(self):
         text = json.dumps(self.statistics("--spp", "3", "-t", "1")).lower()

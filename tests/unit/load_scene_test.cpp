@@ -208,7 +208,7 @@ TEST_CASE("docs: the examples of the scene format, put together, are one scene w
     }
     const SceneFolder folder;
     folder.write("materials.toml", "[material.glass]\ntransmission_weight = 1\n");
-    folder.write("car.obj", kTriangle);
+    for (const char* mesh : {"car.obj", "wall.obj"}) folder.write(mesh, kTriangle);
     for (const char* image : {"sky.exr", "tiles.png", "tiles_normal.png"}) folder.write(image, "x");
     const std::vector<float> row{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     std::string bytes(row.size() * sizeof(float), '\0');
@@ -216,7 +216,7 @@ TEST_CASE("docs: the examples of the scene format, put together, are one scene w
     folder.write("parking.f32", bytes);
     const SceneDesc loaded = load_scene(folder.write("doc.toml", scene));
     CHECK(loaded.warnings.empty());
-    CHECK(loaded.instances.size() == 3);  // the disc, the row, the balls
+    CHECK(loaded.instances.size() == 4);  // the wall, the disc, the row, the balls
     CHECK(loaded.lights.size() == 2);
     CHECK(material(loaded, "lamp").specular_roughness.texture >= 0);
 }
