@@ -226,6 +226,8 @@ void ShaderProgram::compile_relief() {
     tangent_ = add(m_.geometry_tangent);
     coat_tangent_ = add(m_.geometry_coat_tangent);
     bump_ = add(m_.bump);
+    // A height that is the same everywhere is none.
+    if (m_.bump.node >= 0 && bump_.op < 0) m_.bump = {0};
     const bool bends = bends_normal() || bends_coat_normal(),
                turns = turns_tangent() || turns_coat_tangent();
     facts_.tangent |= bends || turns;

@@ -234,13 +234,28 @@ private:
         MaterialDesc material = inherited(name, table, depth, at);
         material.name = name;
         material.loc = table.loc;
-        fill(material, table, at);
+        fill(material, table, nodes_of(name, table), at);
         put(name, std::move(material), table.find("inherits") != nullptr);
         done_.insert(name);
     }
 
-    void fill(MaterialDesc& material, const Value& table, const ReadContext& at) {
-        NodeReader nodes(material, reader_, table.find("node"));
+    /// The nodes that can be named: the material's own, and those of what it inherits from.
+    const Value* nodes_of(const std::string& name, const Value& table) {
+        Value all{Table{}, table.loc};
+        const Value* inherits = table.find("inherits");
+        if (inherits && inherits->text()) {
+            const auto parent = nodes_.find(*inherits->text());
+            if (parent != nodes_.end()) all = parent->second;
+        }
+        if (const Value* own = table.find("node"); own && own->table())
+            for (const auto& [key, value] : *own->table())
+                std::get<Table>(all.data).insert_or_assign(key, value);
+        return &(nodes_[name] = std::move(all));
+    }
+
+    void fill(MaterialDesc& material, const Value& table, const Value* named,
+              const ReadContext& at) {
+        NodeReader nodes(material, reader_, named);
         MaterialTarget target{material, reader_, nodes};
         read_keys(table, material_rows(), target, at);
         if (const Value* layers = table.find("layer"))
@@ -255,7 +270,8 @@ private:
             const Value document = parse_toml(p.text, "preset:" + name);
             const Value* table = document.find("material")->find(name);
             MaterialDesc material;
-            fill(material, *table, {at.problems, "preset '" + name + "'", "input"});
+            fill(material, *table, table->find("node"),
+                 {at.problems, "preset '" + name + "'", "input"});
             return material;
         }
         at.problems.error(written.loc, at.subject + ": there is no preset '" + name + "'" +
@@ -320,6 +336,7 @@ private:
     std::map<std::string, std::vector<int>, std::less<>> library_;
     std::set<std::string> started_;
     std::set<std::string> done_;
+    std::map<std::string, Value, std::less<>> nodes_;
 };
 
 }  // namespace

@@ -1,7 +1,10 @@
 #!/usr/bin/env python3
-"""Writes drum.obj, an oil drum of 216 litres in metres, and stencil.png, what is painted on it."""
+"""Writes drum.obj, an oil drum in metres, and stencil.png, what is painted on it: generate.py [FOLDER]"""
+
 import math
+import pathlib
 import struct
+import sys
 import zlib
 
 SIDES = 56
@@ -61,7 +64,7 @@ def lathe(out, runs, center=(0.0, 0.0), sides=SIDES, first=1):
     return first
 
 
-def drum():
+def drum(folder):
     out = ["# by generate.py", "o drum"]
     first = lathe(out, PROFILE)
     for center, radius in CAPS:
@@ -69,11 +72,10 @@ def drum():
                 [(radius - 0.004, 0.872), (radius * 0.55, 0.872)], [(radius * 0.55, 0.872), (radius * 0.5, 0.866)],
                 [(radius * 0.5, 0.866), (0.0, 0.866)]]
         first = lathe(out, runs, center, 32, first)
-    with open("drum.obj", "w") as f:
-        f.write("\n".join(out) + "\n")
+    (folder / "drum.obj").write_text("\n".join(out) + "\n")
 
 
-def stencil(width=512, height=256):
+def stencil(folder, width=512, height=256):
     """A diamond and bars, white where there is paint; the alpha is the mask, frayed by a hash."""
     rows = []
     for y in range(height):
@@ -94,11 +96,12 @@ def stencil(width=512, height=256):
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
-    with open("stencil.png", "wb") as f:
-        f.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0)) +
-                chunk(b"IDAT", zlib.compress(b"".join(rows), 9)) + chunk(b"IEND", b""))
+    (folder / "stencil.png").write_bytes(
+        b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0)) +
+        chunk(b"IDAT", zlib.compress(b"".join(rows), 9)) + chunk(b"IEND", b""))
 
 
 if __name__ == "__main__":
-    drum()
-    stencil()
+    target = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parent)
+    drum(target)
+    stencil(target)
