@@ -208,7 +208,7 @@ NodeResult GraphRun::run(const Graph::Op& op) noexcept {
             const auto height = [&](const ShadeInput& at) {
                 return GraphRun(graph_, at, store_).value(op.in[0]).x * scale;
             };
-            return {bumped_normal(value(op.in[2]), in_, height), 0.0f, {}};
+            return {bumped_normal(value(op.in[2]), in_, object_unit(in_), height), 0.0f, {}};
         }
         case NodeOp::edgewear: {
             if (!in_.creases) return {};

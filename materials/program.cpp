@@ -374,7 +374,8 @@ float ShaderProgram::opacity(const ShadeInput& in, const TextureStore* store) co
 Vec3f ShaderProgram::normal(const ShadeInput& in, const TextureStore* store) const noexcept {
     Vec3f n = mapped_normal(m_.geometry_normal, normal_, in, store);
     if (!m_.bump.varies()) return n;
-    return bumped_normal(n, in, [&](const ShadeInput& at) {
+    const float unit = m_.bump_in_uv ? texture_unit(in) : object_unit(in);
+    return bumped_normal(n, in, unit, [&](const ShadeInput& at) {
         return m_.bump.node >= 0 ? GraphRun(relief_, at, store).value(bump_).x
                                  : read(m_.bump, at, store);
     });

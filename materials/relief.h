@@ -33,11 +33,21 @@ inline ShadeInput moved(ShadeInput in, Vec3f by, Vec2f uv) {
     return in;
 }
 
-/// n (on in.n's side) tilted by a height in the object's units that varies over the surface;
-/// height(ShadeInput) is asked at three points half a footprint apart. Mikkelsen, "Bump Mapping
-/// Unparametrized Surfaces on the GPU", 2010.
+/// What the object's unit comes to in the world, along the normal.
+inline float object_unit(const ShadeInput& in) {
+    return in.to_object ? 1.0f / length(in.to_object->vector(in.n)) : 1.0f;
+}
+
+/// The length in the world over which u or v grow by one.
+inline float texture_unit(const ShadeInput& in) {
+    return in.uv_width > 0.0f ? in.p_width / in.uv_width : 0.0f;
+}
+
+/// n (on in.n's side) tilted by a height that varies over the surface; `unit` is what a height of
+/// one comes to in the world. height(ShadeInput) is asked at three points half a footprint apart.
+/// Mikkelsen, "Bump Mapping Unparametrized Surfaces on the GPU", 2010.
 template <class Height>
-Vec3f bumped_normal(Vec3f n, const ShadeInput& in, Height height) {
+Vec3f bumped_normal(Vec3f n, const ShadeInput& in, float unit, Height height) {
     const Vec3f out = in.front ? n : -n;
     Vec3f t = in.dpdu, b = in.dpdv;
     float lt = length(t), lb = length(b);
@@ -52,9 +62,7 @@ Vec3f bumped_normal(Vec3f n, const ShadeInput& in, Height height) {
     const float du = charted ? step / lt : 0.0f, dv = charted ? step / lb : 0.0f;
     const float h = height(in), along_t = height(moved(in, t * step, {du, 0.0f})) - h,
                 along_b = height(moved(in, b * step, {0.0f, dv})) - h;
-    // Heights grow with the object.
-    const float grown = in.to_object ? 1.0f / length(in.to_object->vector(out)) : 1.0f;
-    const float k = grown / (step * dot(out, cross(t, b)));
+    const float k = unit / (step * dot(out, cross(t, b)));
     const Vec3f tilted = normalize(out - (cross(b, out) * along_t + cross(out, t) * along_b) * k);
     if (!(length2(tilted) < 2.0f)) return n;
     return in.front ? tilted : -tilted;

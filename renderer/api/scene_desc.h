@@ -193,6 +193,7 @@ struct MaterialDesc {
     NormalInput geometry_tangent;       // a node's; none: along u
     NormalInput geometry_coat_tangent;  // none: the surface's
     FloatInput bump{0};                 // height over the surface, in the object's units
+    bool bump_in_uv = false;            // or in widths of the texture, as MTL files have it
 
     std::vector<NodeDesc> nodes;  // what inputs refer to
 

@@ -228,8 +228,13 @@ void Mapper::maps() {
         out_.displacement.value = out_.displacement.texture >= 0 ? 1.0f : 0.0f;
     }
     const bool bump_is_normal = to_lower(v_.bump.file).find("norm") != std::string::npos;
-    if (has("bump") && !bump_is_normal) {
-        context_->tally->add("not supported yet, ignored:", line("bump"), "bump (height) maps");
+    if (has("bump") && !bump_is_normal && !has("norm")) {
+        // The format gives no unit: white is a hundredth of the texture's width high.
+        constexpr float kHeight = 0.01f;
+        out_.bump.texture = texture("bump", v_.bump);
+        out_.bump.channel = channel_of(v_.bump);
+        out_.bump.value = out_.bump.texture >= 0 ? kHeight * v_.bump.bump : 0.0f;
+        out_.bump_in_uv = true;
     }
     if (has("bump") && bump_is_normal && !has("norm"))
         note("bump", "bump file is taken for a normal map by its name");

@@ -65,8 +65,8 @@ public:
         visit_inputs([&](auto member, const OpenPbrInput&) { (*this)(m.*member); });
         all(m.displacement_scale, m.displacement_offset, m.displacement_space);
         all(m.geometry_thin_walled, m.geometry_normal, m.geometry_coat_normal, m.geometry_tangent,
-            m.geometry_coat_tangent, m.nodes, m.dielectric_priority, m.use_vertex_color,
-            m.reflection_map);
+            m.geometry_coat_tangent, m.bump_in_uv, m.nodes, m.dielectric_priority,
+            m.use_vertex_color, m.reflection_map);
     }
     void operator()(const ReflectionMapDesc& r) {
         all(r.file, r.projection, r.color_space, r.scale, r.rotate_deg, r.position, r.radius,

@@ -166,10 +166,18 @@ TEST_CASE("mtl: what is not understood or not supported is told once with its li
     const LoadedObj got = with_mtl("Km 1\nmap_Pc a.png\nPcr 0.1\nbump height.png\nKm 2\n");
     CHECK(got.warned("m.mtl:2: unknown material statement, ignored: 'Km'"));
     CHECK(got.warned("m.mtl:3: not supported yet, ignored: 'map_Pc'"));
-    CHECK(got.warned("m.mtl:5: not supported yet, ignored: bump (height) maps"));
-    CHECK(got.warnings.size() == 3);
+    CHECK(got.warnings.size() == 2);
     CHECK(got.material().coat_roughness.value == 0.1f);
-    CHECK(got.scene.textures.empty());
+}
+
+TEST_CASE("mtl: a height map bumps by hundredths of the texture's width, unless there are normals") {
+    const LoadedObj got = with_mtl("map_Bump -bm 2 height.png\n");
+    CHECK(file_name(got, got.material().bump.texture) == "height.png");
+    CHECK(got.material().bump.value == 0.02f);
+    CHECK(got.material().bump_in_uv);
+    const LoadedObj both = with_mtl("map_Bump height.png\nnorm normals.png\n");
+    CHECK(both.material().bump.texture == -1);
+    CHECK(both.material().geometry_normal.texture == 0);
 }
 
 TEST_CASE("mtl: a bump map named like a normal map is one, with a note") {

@@ -40,22 +40,23 @@ TEST_CASE("relief: a bump's normal is that of the height field, whatever the cha
     };
     for (const Vec3f v_axis : {Vec3f{0, 1, 0}, Vec3f{0, -2, 0}, Vec3f{0.7f, 0.4f, 0}}) {
         const ShadeInput in = on_plane({}, v_axis);
-        CHECK(near(bumped_normal(in.n, in, height), expected, 1e-4f));
+        CHECK(near(bumped_normal(in.n, in, object_unit(in), height), expected, 1e-4f));
         ShadeInput behind = in;
         behind.n = -in.n;
         behind.front = false;
-        CHECK(near(bumped_normal(behind.n, behind, height), -expected, 1e-4f));
+        CHECK(near(bumped_normal(behind.n, behind, 1.0f, height), -expected, 1e-4f));
     }
     ShadeInput uncharted = on_plane();
     uncharted.dpdu = uncharted.dpdv = {};
-    CHECK(near(bumped_normal(uncharted.n, uncharted, height), expected, 1e-4f));
+    CHECK(near(bumped_normal(uncharted.n, uncharted, 1.0f, height), expected, 1e-4f));
 }
 
 TEST_CASE("relief: heights by texture coordinates tilt by their slope on the surface") {
     ShadeInput in = on_plane();
     in.dpdu = {4, 0, 0};  // u grows by one over four units
     const auto height = [](const ShadeInput& at) { return 2.0f * at.uv.x; };
-    CHECK(near(bumped_normal(in.n, in, height), normalize(Vec3f{-0.5f, 0, 1}), 1e-4f));
+    CHECK(near(bumped_normal(in.n, in, object_unit(in), height), normalize(Vec3f{-0.5f, 0, 1}),
+               1e-4f));
 }
 
 TEST_CASE("relief: an object made larger keeps the look of its bumps") {
@@ -64,14 +65,15 @@ TEST_CASE("relief: an object made larger keeps the look of its bumps") {
                             {});  // placed ten times as large
     in.to_object = &to_object;
     const auto height = [](const ShadeInput& at) { return 0.4f * at.p_object.x; };
-    CHECK(near(bumped_normal(in.n, in, height), normalize(Vec3f{-0.4f, 0, 1}), 1e-3f));
+    CHECK(near(bumped_normal(in.n, in, object_unit(in), height), normalize(Vec3f{-0.4f, 0, 1}),
+               1e-3f));
 }
 
 TEST_CASE("relief: heights that are no numbers leave the normal alone") {
     const ShadeInput in = on_plane();
     for (const float bad : {NAN, INFINITY}) {
         const auto height = [&](const ShadeInput& at) { return at.p_world.x > 0 ? bad : 0.0f; };
-        CHECK(near(bumped_normal(in.n, in, height), in.n));
+        CHECK(near(bumped_normal(in.n, in, object_unit(in), height), in.n));
     }
 }
 
