@@ -170,7 +170,8 @@ TEST_CASE("mtl: what is not understood or not supported is told once with its li
     CHECK(got.material().coat_roughness.value == 0.1f);
 }
 
-TEST_CASE("mtl: a height map bumps by hundredths of the texture's width, unless there are normals") {
+TEST_CASE(
+    "mtl: a height map bumps by hundredths of the texture's width, unless there are normals") {
     const LoadedObj got = with_mtl("map_Bump -bm 2 height.png\n");
     CHECK(file_name(got, got.material().bump.texture) == "height.png");
     CHECK(got.material().bump.value == 0.02f);
