@@ -43,6 +43,14 @@ bool same(const Graph::Op& a, const Graph::Op& b) {
     return true;
 }
 
+// As many as a node has are written; clearing the rest would take longer than many a node.
+struct Inputs {
+    Inputs() {}
+    union {
+        NodeResult at[kMaxNodeInputs];
+    };
+};
+
 Vec3f output_of(const NodeResult& r, int output) {
     return output == 0 ? r.v : Vec3f(r.more[output - 1]);
 }
@@ -239,9 +247,9 @@ NodeResult GraphRun::run(const Graph::Op& op) noexcept {
         default:
             break;
     }
-    NodeResult in[kMaxNodeInputs];
-    for (int i = 0; i < op.inputs; ++i) in[i] = result(op.in[i]);
-    return run_node(op.op, in);
+    Inputs in;
+    for (int i = 0; i < op.inputs; ++i) in.at[i] = result(op.in[i]);
+    return run_node(op.op, in.at);
 }
 
 }  // namespace tessera

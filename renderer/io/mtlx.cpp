@@ -9,11 +9,7 @@
 namespace tessera {
 namespace {
 
-/// Elements that say nothing about a material by themselves, and those that are told of because a
-/// reader might miss what they do.
-constexpr std::array<std::string_view, 10> kSilent{
-    "nodedef", "nodegraph", "implementation", "backdrop",  "output",
-    "typedef", "unitdef",   "unittypedef",    "targetdef", "geompropdef"};
+/// Elements that are told of because a reader might miss what they do.
 constexpr std::array<std::string_view, 10> kIgnored{
     "look",        "lookgroup",  "materialassign", "collection", "geominfo",
     "propertyset", "variantset", "geomattr",       "property",   "attributedef"};

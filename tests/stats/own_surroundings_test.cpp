@@ -27,7 +27,7 @@ struct Images {
                                             {"lively_green.exr", {0, 1, 0}},
                                             {"lively.exr", {1, 1, 1}}}) {
             write_map(folder.path(name), MapProjection::latlong, 64, 32,
-                      [&](Vec3d d) { return Color(lively(d).y) * channel; });
+                      [&, tint = channel](Vec3d d) { return Color(lively(d).y) * tint; });
         }
     }
 };

@@ -67,8 +67,10 @@ TEST_CASE("texture filters: closest, bilinear and bicubic are their kernels, for
         {TextureFilter::closest, box},
         {TextureFilter::bilinear, tent},
         {TextureFilter::bicubic, bspline}};
-    for (const auto& [filter, kernel] : filters)
+    for (const auto& each : filters)
         for (const Wrap wrap : kWraps) {
+            const TextureFilter filter = each.first;
+            const auto kernel = each.second;
             CAPTURE(int(filter));
             CAPTURE(int(wrap));
             TestStore s;
