@@ -91,11 +91,25 @@ Wire Graph::add(const std::vector<NodeDesc>& nodes, int node, int output) {
         op.texture = desc.texture;
         op.inputs = static_cast<std::uint8_t>(desc.inputs.size());
         for (std::size_t i = 0; i < desc.inputs.size(); ++i) op.in[i] = wire_of(nodes, desc, i);
+        count_bumps(desc, op);
         wire = add_op(desc, op);
         known_[node] = wire;
     }
     if (wire.op >= 0) wire.output = static_cast<std::uint8_t>(output);
     return wire;
+}
+
+void Graph::count_bumps(const NodeDesc& desc, Op& op) const {
+    for (int i = 0; i < op.inputs; ++i) {
+        if (op.in[i].op < 0) continue;
+        const int below = ops_[static_cast<std::size_t>(op.in[i].op)].bumps;
+        const int here = below + (op.op == NodeOp::bump && i == 0 ? 1 : 0);
+        op.bumps = static_cast<std::uint8_t>(std::max<int>(op.bumps, here));
+    }
+    if (op.bumps > kMaxBumps)
+        throw Error(
+            ExitCode::scene, desc.loc,
+            "bumps in the heights of bumps go " + std::to_string(kMaxBumps) + " deep at most");
 }
 
 Wire Graph::add_op(const NodeDesc& desc, const Op& op) {
@@ -131,6 +145,8 @@ Wire Graph::add_op(const NodeDesc& desc, const Op& op) {
     reads_tangent_ |=
         op.op == NodeOp::tangent || op.op == NodeOp::normalmap || op.op == NodeOp::bump;
     reads_color_ |= op.op == NodeOp::geomcolor;
+    reads_attributes_ |= reads_color_ || reads_tangent_ || op.op == NodeOp::normal ||
+                         op.op == NodeOp::triplanar || op.op == NodeOp::facingratio;
     if (op.op == NodeOp::edgewear) {
         const float angle = op.in[2].op < 0 ? op.in[2].constant.x : 0.0f;
         crease_angle_ = std::min(crease_angle_, std::max(angle, kLeastCrease_deg));

@@ -39,6 +39,7 @@ public:
         bool color = true;
         int texture = -1;
         std::uint8_t inputs = 0;
+        std::uint8_t bumps = 0;  // each of them asks for its height three times
         Wire in[kMaxNodeInputs];
     };
 
@@ -49,6 +50,10 @@ public:
     bool reads_geometry() const noexcept { return reads_geometry_; }
     bool reads_vertex_color() const noexcept { return reads_color_; }
     bool reads_tangent() const noexcept { return reads_tangent_; }
+    /// Reads what only a hit knows: smooth normals, how they are seen, tangents, vertex colours.
+    bool reads_attributes() const noexcept { return reads_attributes_; }
+    /// How many bumps lie in the heights of bumps.
+    static constexpr int kMaxBumps = 4;
     /// The least angle of creases that a node asks for, in degrees; infinite: none does.
     float crease_angle_deg() const noexcept { return crease_angle_; }
 
@@ -57,11 +62,13 @@ public:
 
 private:
     Wire add_op(const NodeDesc& desc, const Op& op);
+    void count_bumps(const NodeDesc& desc, Op& op) const;
     Wire wire_of(const std::vector<NodeDesc>& nodes, const NodeDesc& desc, std::size_t input);
 
     std::vector<Op> ops_;
     std::map<int, Wire> known_;  // by node, its main output
     bool reads_uv_ = false, reads_geometry_ = false, reads_color_ = false, reads_tangent_ = false;
+    bool reads_attributes_ = false;
     float crease_angle_ = kInfinity;
 };
 

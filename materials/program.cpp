@@ -158,6 +158,15 @@ void collect_textures(const MaterialDesc& desc, std::vector<TextureUse>& use,
 }
 
 ShaderProgram::ShaderProgram(const MaterialDesc& desc) : m_(folded(desc)) {
+    CurveCache own;
+    compile(own);
+}
+
+ShaderProgram::ShaderProgram(const MaterialDesc& desc, CurveCache& cache) : m_(folded(desc)) {
+    compile(cache);
+}
+
+void ShaderProgram::compile(CurveCache& cache) {
     visit_textures(m_, [&](int texture, TextureUse) { facts_.textured |= texture >= 0; });
     compile_opacity();
     compile_emission();
@@ -212,7 +221,9 @@ ShaderProgram::ShaderProgram(const MaterialDesc& desc) : m_(folded(desc)) {
           &m_.coat_ior})
         same_boundaries &= !input->varies();
     if (same_boundaries && facts_.specular) {
-        curves_ = std::make_shared<SurfaceCurves>(constant_.make_curves());
+        auto& known = cache[constant_.curve_key()];
+        if (!known) known = std::make_shared<const SurfaceCurves>(constant_.make_curves());
+        curves_ = known;
         constant_.curves = curves_.get();
     }
 }
@@ -251,6 +262,8 @@ void ShaderProgram::compile_emission() {
         emission_luminance_ = emission_graph_.add(m_.nodes, luminance.node, luminance.output);
     if (color.node >= 0) emission_color_ = emission_graph_.add(m_.nodes, color.node, color.output);
     facts_.emissive = !zero(luminance);
+    facts_.emission_by_hit =
+        emission_graph_.reads_attributes() || (facts_.cutout && opacity_graph_.reads_attributes());
     facts_.emission_textured = luminance.varies() || color.varies();
     facts_.emission_geometry = emission_graph_.reads_geometry() ||
                                emission_graph_.reads_tangent() ||

@@ -22,6 +22,7 @@ struct ProgramFacts {
     bool opacity_textured = false;
     bool opacity_geometry = false;   // reads more than texture coordinates
     bool emission_geometry = false;  // as well
+    bool emission_by_hit = false;    // or what only a hit knows: light sampling cannot ask
     bool emissive = false;
     bool emission_textured = false;
     bool specular = false;  // any lobe other than Lambert's
@@ -44,6 +45,8 @@ class ShaderProgram {
 public:
     /// desc's texture indices are those of the TextureStore (see remapped).
     explicit ShaderProgram(const MaterialDesc& desc);
+    /// Shares what other programs made with the same cache have computed.
+    ShaderProgram(const MaterialDesc& desc, CurveCache& cache);
 
     const ProgramFacts& facts() const noexcept { return facts_; }
 
@@ -103,6 +106,7 @@ private:
     SurfaceParams params(const ShadeInput& in, const TextureStore* store) const noexcept;
     Surface varied(const ShadeInput& in, const TextureStore* store) const noexcept;
     Color mean_emission_of_graph(const TextureStore* store) const noexcept;
+    void compile(CurveCache& cache);
     void compile_relief();
     void compile_opacity();
     void compile_emission();

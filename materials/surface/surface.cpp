@@ -56,6 +56,21 @@ Surface::Surface(const SurfaceParams& params) : p(params) {
     below_coat = lerp(dielectric, p.base_color * p.base_weight, p.base_metalness);
 }
 
+CurveKey Surface::curve_key() const {
+    const auto flag = [](bool yes) { return yes ? 1.0f : 0.0f; };
+    return {is_smooth(ggx) ? 0.0f : mean_alpha(ggx),
+            boundary_eta,
+            ior,
+            flag(p.base_metalness > 0.0f),
+            flag(p.base_metalness < 1.0f),
+            flag(p.transmission_weight > 0.0f),
+            flag(p.transmission_weight < 1.0f),
+            flag(p.thin_walled),
+            flag(p.coat_weight > 0.0f),
+            is_smooth(coat_ggx) ? 0.0f : mean_alpha(coat_ggx),
+            p.coat_ior};
+}
+
 SurfaceCurves Surface::make_curves() const {
     SurfaceCurves c;
     const bool dielectric = p.base_metalness < 1.0f;

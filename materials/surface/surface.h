@@ -2,6 +2,8 @@
 // A surface's parameters with what follows from them whatever they are seen from: what a material
 // that does not vary computes once.
 
+#include <array>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -19,6 +21,10 @@ struct SurfaceCurves {
     std::optional<AlbedoCurve> boundary, metal, coat, glass_outside, glass_inside;
 };
 
+using CurveKey = std::array<float, 11>;
+/// Surfaces that differ in colour only share theirs: a model may have thousands.
+using CurveCache = std::map<CurveKey, std::shared_ptr<const SurfaceCurves>>;
+
 struct Surface {
     SurfaceParams p;
     Ggx ggx;  // of the base; a rough coat blurs what lies below it
@@ -33,6 +39,8 @@ struct Surface {
 
     /// The curves that lobes of this surface can ask for.
     SurfaceCurves make_curves() const;
+    /// All that they depend on.
+    CurveKey curve_key() const;
 
     float boundary_albedo(float cos_o) const {
         if (curves && curves->boundary) return (*curves->boundary)(cos_o);

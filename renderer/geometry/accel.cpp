@@ -43,7 +43,7 @@ void filter_opacity(const RTCFilterFunctionNArguments* args) {
                       RTCRayN_dir_z(args->ray, args->N, i)};
         hit.far_side = dot(ng, d) > 0.0f;
         const std::uint32_t seed = call->seeds[RTCRayN_id(args->ray, args->N, i)];
-        if (!call->opacity.stops(call->opacity.scene, hit, seed)) args->valid[i] = 0;
+        if (!call->opacity.stops(call->opacity.scene, hit, d, seed)) args->valid[i] = 0;
     }
 }
 

@@ -12,10 +12,12 @@
 namespace tessera {
 
 /// Asked for each hit on a cut-out part: does the ray stop here? Must depend on its arguments only
-/// (Embree may ask twice for one hit). seed: the path's own number, see Accel::intersect.
+/// (Embree may ask twice for one hit). d: the ray's direction in the space of the hit shape. seed:
+/// the path's own number, see Accel::intersect.
 struct OpacityTest {
     const void* scene = nullptr;
-    bool (*stops)(const void* scene, const Hit& hit, std::uint32_t seed) noexcept = nullptr;
+    bool (*stops)(const void* scene, const Hit& hit, Vec3f d,
+                  std::uint32_t seed) noexcept = nullptr;
 };
 
 struct AccelOptions {

@@ -25,9 +25,11 @@ std::vector<std::uint32_t> weld(const MeshDesc& mesh, Cage& cage) {
     cage.origin = mesh.position_index.empty() ? Vec3d{} : (lo + hi) * 0.5;
     std::vector<std::uint32_t> order(count), of(count);
     std::iota(order.begin(), order.end(), 0u);
+    // To a hundred-millionth of the mesh: the seam of a ball meets itself but for rounding.
+    const double grid = std::max(max_component(hi - lo) * 1e-8, 1e-300);
     const auto key = [&](std::uint32_t i) {
-        const Vec3d p = position(mesh, i);
-        return std::array<double, 3>{p.x, p.y, p.z};
+        const Vec3d p = (position(mesh, i) - cage.origin) * (1.0 / grid);
+        return std::array<double, 3>{std::round(p.x), std::round(p.y), std::round(p.z)};
     };
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
         const auto ka = key(a), kb = key(b);

@@ -360,6 +360,13 @@ bool TextureStore::channel_is_one(int texture, int c) const noexcept {
     return (c == 3 && !any_alpha) || (one && !bounded && !graded && whole);
 }
 
+bool TextureStore::is_missing(int texture) const noexcept {
+    bool missing = false;
+    impl_->each_source(impl_->uses[static_cast<std::size_t>(texture)],
+                       [&](const TextureSource& s) { missing = missing || s.magenta; });
+    return missing;
+}
+
 bool TextureStore::has_alpha(int texture) const noexcept {
     bool any = false;
     impl_->each_source(impl_->uses[static_cast<std::size_t>(texture)],

@@ -75,6 +75,8 @@ public:
     /// not known (channels of the tile cache).
     bool channel_is_one(int texture, int c) const noexcept;
     bool has_alpha(int texture) const noexcept;
+    /// A file that could not be read: magenta.
+    bool is_missing(int texture) const noexcept;
     std::int64_t memory_bytes() const noexcept;
     TextureCounts counts() const noexcept;
 

@@ -102,7 +102,7 @@ void become_magenta(TextureSource& s, const ByteTables& tables, const Error& why
     else
         s.warnings.push_back(std::string(why.what()) + "; magenta in its place");
     s.pyramid = constant_pyramid({255, 0, 255}, tables);
-    s.in_core = true;
+    s.in_core = s.magenta = true;
     s.alpha = false;
     s.width = s.height = 1;
     s.bytes = s.finest_bytes = 0;

@@ -29,7 +29,8 @@ struct TextureSource {
 
     Pyramid pyramid;
     bool in_core = true;
-    int tile = -1;  // in the tile cache instead
+    bool magenta = false;  // it could not be read
+    int tile = -1;         // in the tile cache instead
 
     std::vector<std::string> damages, warnings, notes;
     std::string error;  // the colour space is unknown: the user's mistake, not the file's

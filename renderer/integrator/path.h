@@ -364,8 +364,9 @@ private:
     // An emissive mesh says by its material what it sends.
     void look_at_emitter(int i) noexcept {
         if (light_.material[i] < 0) return;
-        light_.radiance.set(i, emitter_radiance(scene_, light_.material[i], light_.placement[i],
-                                                light_.uv[i], light_.p[i], light_.n[i]));
+        light_.radiance.set(
+            i, emitter_radiance(scene_, light_.material[i], light_.placement[i], light_.uv[i],
+                                light_.p[i], light_.n[i], light_.wi[i]));
     }
 
     // What the lights give if nothing is in the way. Returns the lanes that it is worth a ray for.

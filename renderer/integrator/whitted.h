@@ -184,7 +184,7 @@ private:
         if (!same_side(light.wi, wi, v.frame.guard)) return false;
         if (light.material >= 0)
             light.radiance = emitter_radiance(scene_, light.material, light.placement, light.uv,
-                                              light.p, light.n);
+                                              light.p, light.n, light.wi);
         wi_.set(i, wi);
         pending_[i] = node_[i].weight * light.radiance * (1.0f / light.pdf);
         const Vec3f o = ray_origin(v.s.p, v.s.p_error, v.s.ng, v.frame.lift, light.wi, wi);

@@ -398,6 +398,12 @@ std::optional<NodeValue> NodeReader::read_normal(const Value& value, const std::
             at.problems.error(value.loc, at.subject + ": " + key + " takes nodes, no constants");
             return std::nullopt;
         }
+        if (node && (node->output > 0 || types_.at(node->node) == NodeType::scalar)) {
+            at.problems.error(value.loc, at.subject + ": " + key +
+                                             " takes a vector, the node gives a number (a height "
+                                             "is for 'bump')");
+            return std::nullopt;
+        }
         return node;
     }
     TextureEntry entry;

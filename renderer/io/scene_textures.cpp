@@ -77,8 +77,12 @@ const KeySet<TextureEntry>& normal_texture_keys() {
 
 int add_texture(const Value& table, const TextureEntry& entry, const ReadContext& at,
                 SceneReader& reader) {
-    if (entry.file.empty()) return -1;  // reported as missing
     const Value* written = table.find("file");
+    if (entry.file.empty()) {
+        if (written && written->text())
+            at.problems.error(written->loc, at.subject + ": file is empty");
+        return -1;  // else reported as missing
+    }
     const SourceLoc loc = written ? written->loc : table.loc;
     const TextureFiles files = find_texture_files(reader.assets, entry.file, reader.folder_of(loc),
                                                   reader.scene.render.frame + entry.frame_offset);

@@ -105,11 +105,25 @@ private:
                                                                problems_, nullptr, textures);
         }
         textures_left_out_ = n - requests.size();
+        CurveCache curves;
         for (std::size_t i = 0; i < desc_.materials.size(); ++i) {
-            const MaterialDesc m = remapped(desc_.materials[i], remap);
-            scene_->programs_.emplace_back(m);
+            MaterialDesc m = remapped(desc_.materials[i], remap);
+            if (scene_->textures_) forget_missing_shapes(m, *scene_->textures_);
+            scene_->programs_.emplace_back(m, curves);
             displacements_.push_back(displaced[i] ? Displacement(m) : Displacement());
         }
+    }
+
+    // A map that is missing shows in magenta; one that would bend, move or cut the surface is
+    // nothing.
+    static void forget_missing_shapes(MaterialDesc& m, const TextureStore& store) {
+        const auto missing = [&](int texture) { return texture >= 0 && store.is_missing(texture); };
+        if (missing(m.geometry_normal.texture)) m.geometry_normal = {};
+        if (missing(m.geometry_coat_normal.texture)) m.geometry_coat_normal = {};
+        if (missing(m.geometry_opacity.texture)) m.geometry_opacity.texture = -1;
+        if (missing(m.bump.texture)) m.bump = {0};
+        if (missing(m.displacement.texture)) m.displacement = {0};
+        if (missing(m.vector_displacement.texture)) m.vector_displacement = {};
     }
 
     // By the camera that frames what is there before: what it frames in the end is not known yet.

@@ -198,10 +198,15 @@ struct EmitterBuilder {
         std::map<std::int32_t, double> bright;
         std::vector<double> weights;
         double sum = 0;
+        bool by_hit = false;
         for (std::uint32_t face = 0; face < mesh.faces(); ++face) {
             const std::int32_t m =
                 material >= 0 ? material : mesh.materials[mesh.material_slot(face)];
             if (m < 0 || !in.programs[m].facts().emissive) continue;
+            if (in.programs[m].facts().emission_by_hit) {
+                by_hit = true;
+                continue;
+            }
             const auto known = bright.find(m);
             const double b = known != bright.end() ? known->second : (bright[m] = brightness(m));
             if (!(b > 0)) continue;
@@ -214,6 +219,10 @@ struct EmitterBuilder {
             if (b > 0) out->density.push_back({m, static_cast<float>(b / sum)});
         }
         if (!weights.empty()) out->pick = AliasTable(weights);
+        if (by_hit)
+            in.problems.warn({},
+                             "an emissive mesh whose graph reads normals, tangents or vertex "
+                             "colours is found by chance only: expect noise");
         return out;
     }
 

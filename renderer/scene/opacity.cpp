@@ -6,20 +6,23 @@
 namespace tessera {
 namespace {
 
-// What an opacity graph can ask for: no viewer, no footprint.
-ShadeInput opacity_input(const Scene& scene, const HitTarget& target, const Hit& hit, Vec2f uv) {
+// What an opacity graph can ask for: no footprint.
+ShadeInput opacity_input(const Scene& scene, const HitTarget& target, const Hit& hit, Vec3f d,
+                         Vec2f uv) {
     SurfacePoint s = surface_point(scene.geometry(), target, hit, Ray{}, true);
     add_texture_frame(scene.geometry(), hit, s);
     ShadeInput in;
     in.uv = uv;
     in.vertex_color = s.vertex_color;
     place_input(scene, s, in);
+    const Placement& placed = scene.geometry().placements[target.placement];
+    look_along(placed.instanced ? placed.to_world.vector(d) : d, s, in);
     return in;
 }
 
 }  // namespace
 
-bool opacity_stops(const void* opaque_scene, const Hit& hit, std::uint32_t seed) noexcept {
+bool opacity_stops(const void* opaque_scene, const Hit& hit, Vec3f d, std::uint32_t seed) noexcept {
     const Scene& scene = *static_cast<const Scene*>(opaque_scene);
     const Geometry& g = scene.geometry();
     const HitTarget target = scene.accel().target(hit);
@@ -33,7 +36,7 @@ bool opacity_stops(const void* opaque_scene, const Hit& hit, std::uint32_t seed)
         if (material < 0) material = mesh.materials[mesh.material_slot(face)];
         const ProgramFacts& facts = scene.program(material).facts();
         if (facts.opacity_textured) in.uv = surface_uv(mesh, face, hit.u, hit.v);
-        if (facts.opacity_geometry) in = opacity_input(scene, target, hit, in.uv);
+        if (facts.opacity_geometry) in = opacity_input(scene, target, hit, d, in.uv);
     } else if (material < 0) {
         material = placed.kind == PlacedKind::sphere ? g.spheres[placed.shape].material
                                                      : g.discs[placed.shape].material;

@@ -1,6 +1,8 @@
 #pragma once
 // What a program may ask of a surface point, whoever looks at it.
 
+#include <cmath>
+
 #include "renderer/scene/scene.h"
 
 namespace tessera {
@@ -20,9 +22,16 @@ inline void place_input(const Scene& scene, const SurfacePoint& s, ShadeInput& i
     in.dpdu = s.dpdu, in.dpdv = s.dpdv, in.handed = s.handed;
 }
 
-/// What a sampled point of an emissive mesh sends.
+/// The point as a ray along d sees it; d need not be of unit length.
+inline void look_along(Vec3f d, const SurfacePoint& s, ShadeInput& in) {
+    in.front = dot(s.ng, d) <= 0.0f;
+    in.n = in.front ? s.ns : -s.ns;
+    in.facing = std::fabs(dot(s.ns, d)) / length(d);
+}
+
+/// What a sampled point of an emissive mesh sends towards a point that sees it along d.
 inline Color emitter_radiance(const Scene& scene, std::int32_t material, std::uint32_t placement,
-                              Vec2f uv, Vec3f p, Vec3f n) {
+                              Vec2f uv, Vec3f p, Vec3f n, Vec3f d) {
     const ShaderProgram& program = scene.program(material);
     ShadeInput in;
     in.uv = uv;
@@ -32,6 +41,7 @@ inline Color emitter_radiance(const Scene& scene, std::int32_t material, std::ui
         s.ng = s.ns = n;
         s.placement = placement;
         place_input(scene, s, in);
+        look_along(d, s, in);
     }
     return program.visible_emission(in, scene.textures());
 }
