@@ -260,6 +260,7 @@ private:
         read_keys(table, material_rows(), target, at);
         if (const Value* layers = table.find("layer"))
             read_material_layers(*layers, material, nodes, at);
+        nodes.read_unused(table.find("node"), at);
     }
 
     MaterialDesc preset(const std::string& name, const Value& written, const ReadContext& at) {

@@ -142,6 +142,16 @@ std::optional<NodeValue> NodeReader::read_named(const Value& table, NodeType wan
     return node ? output_of(*node, table, wanted, at) : std::nullopt;
 }
 
+void NodeReader::read_unused(const Value* own, const ReadContext& at) {
+    if (!own || !own->table()) return;
+    for (const auto& [name, value] : *own->table()) {
+        if (read_names_.contains(name)) continue;
+        Value reference{Table{}, value.loc};
+        std::get<Table>(reference.data)["node"] = Value{name, value.loc};
+        read_named(reference, NodeType::any, {at.problems, at.subject + ": node", "input"});
+    }
+}
+
 std::optional<int> NodeReader::read_node(const Value& table, NodeType wanted,
                                          const ReadContext& at) {
     const Value* type = table.find("type");

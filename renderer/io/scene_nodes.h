@@ -30,6 +30,9 @@ public:
     std::optional<NodeValue> read_normal(const Value& value, const std::string& key,
                                          const ReadContext& at);
 
+    /// Reads the nodes that nothing has asked for yet: their mistakes count too.
+    void read_unused(const Value* own, const ReadContext& at);
+
     /// What an input holds now, as something a node can take.
     NodeValue node_of(const ColorInput& input, NodeType type);
     NodeValue node_of(const FloatInput& input, NodeType type);

@@ -72,3 +72,42 @@ TEST_CASE("graph light: a lamp by graphs lights a plane as its quadrature says")
     CHECK(std::fabs(mean.mean() - expected()) < 4 * mean.error() + 2e-4 * expected());
     CHECK(mean.error() < 5e-3 * expected());
 }
+
+TEST_CASE("graph light: an opacity by the facing ratio lets shadow rays through as it is seen") {
+    const SceneFolder folder;
+    folder.write("sheet.obj", "v -9 1 -9\nv 9 1 -9\nv 9 1 9\nv -9 1 9\nf 1 2 3 4\n");
+    // Light that comes in at 60 degrees meets the sheet with a cosine of one half.
+    SceneDesc scene = folder.load(
+        "[[mesh]]\nfile = 'sheet.obj'\nmaterial = 'sheet'\n"
+        "[[light]]\ntype = 'distant'\ndirection = [0.8660254, -0.5, 0]\nirradiance = 10\n"
+        "[material.sheet]\nbase_color = 0\nspecular_weight = 0\n"
+        "geometry_opacity = { type = 'facingratio' }\n");
+    DiscDesc floor;
+    floor.radius = 0.01;
+    floor.material = add(scene, matte(1));
+    scene.discs.push_back(floor);
+    place(scene, ShapeKind::disc, 0);
+    look_at_point(scene, {0.5, 0.5, 0}, {0, 0, 0});
+    set_film(scene, 16, 16, 64);
+    Mean mean;
+    const auto pixels = beauty_of(scene);
+    for (std::size_t i = 0; i < pixels.size(); i += 4) mean.add(double(pixels[i]));
+    const double seen = 10 * 0.5 * 0.5 / 3.14159265358979323846;
+    CAPTURE(mean.mean());
+    CAPTURE(seen);
+    CHECK(std::fabs(mean.mean() - seen) < 4 * mean.error());
+}
+
+TEST_CASE("graph light: a map that is missing bends and cuts nothing") {
+    const SceneFolder folder;
+    SceneDesc plain = folder.load("[[sphere]]\nmaterial = 'm'\n[material.m]\nbase_color = 0.5\n");
+    SceneDesc missing = folder.load(
+        "[[sphere]]\nmaterial = 'm'\n[material.m]\nbase_color = 0.5\n"
+        "geometry_normal = { file = 'gone.png' }\ngeometry_opacity = { file = 'gone.png' }\n"
+        "bump = { file = 'gone.png' }\n");
+    for (SceneDesc* scene : {&plain, &missing}) {
+        look(*scene, {0, 0, 6}, {0, 0, 0});
+        set_film(*scene, 16, 16, 16);
+    }
+    CHECK(beauty_of(plain) == beauty_of(missing));
+}

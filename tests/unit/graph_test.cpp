@@ -204,6 +204,42 @@ TEST_CASE("graph: mistakes are located and the nearest name is offered") {
           "unknown key 'opactiy' (did you mean 'opacity'?)");
 }
 
+TEST_CASE("graph: nodes that nothing reads are checked too") {
+    const auto found = [](const std::string& error, const std::string& part) {
+        CAPTURE(error);
+        CHECK(error.find(part) != std::string::npos);
+    };
+    found(failure_of("1", "[material.a.node.x]\ntype = 'nosie2d'\n"), "did you mean 'noise2d'?");
+    found(failure_of("1", "[material.a.node.x]\ntype = 'add'\nin1 = { node = 'x' }\n"),
+          "node 'x' goes in a circle");
+    found(failure_of("1\ngeometry_normal = { type = 'fractal3d' }"), "takes a vector");
+    found(failure_of("{ file = '' }"), "file is empty");
+}
+
+TEST_CASE("graph: bumps in the heights of bumps end somewhere") {
+    const auto nested = [](int depth) {
+        std::string n = "{ type = 'bump', height = { type = 'noise3d' } }";
+        for (int i = 1; i < depth; ++i)
+            n = "{ type = 'bump', height = { type = 'extract', in = " + n + " } }";
+        const SceneFolder folder;
+        const SceneDesc scene = folder.load("[material.a]\ngeometry_normal = " + n + "\n");
+        return ShaderProgram(material_of(scene, "a")).facts().geometry;
+    };
+    CHECK(nested(Graph::kMaxBumps));
+    CHECK_THROWS_AS(nested(Graph::kMaxBumps + 1), Error);
+}
+
+TEST_CASE("graph: nodes of a parent can be named, and written anew") {
+    const SceneFolder folder;
+    const SceneDesc scene = folder.load(
+        "[material.a.node.tint]\ntype = 'constant'\nvalue = [1, 0.5, 0]\n"
+        "[material.b]\ninherits = 'a'\nbase_color = { node = 'tint' }\n"
+        "[material.c]\ninherits = 'a'\nbase_color = { node = 'tint' }\n"
+        "[material.c.node.tint]\ntype = 'constant'\nvalue = [0, 0, 1]\n");
+    CHECK(near(ShaderProgram(material_of(scene, "b")).constant().base_color, {1, 0.5f, 0}));
+    CHECK(near(ShaderProgram(material_of(scene, "c")).constant().base_color, {0, 0, 1}));
+}
+
 TEST_CASE("graph: nodes within nodes end somewhere, and too many are an error") {
     std::string deep = "1";
     for (int i = 0; i < 200; ++i) deep = "{ type = 'invert', in = " + deep + " }";

@@ -245,6 +245,20 @@ TEST_CASE("subdivide: texture coordinates that a hundred faces share are evaluat
     }
 }
 
+TEST_CASE("subdivide: positions that only rounding keeps apart are one") {
+    // Two squares side by side; the second has the shared edge at 1 + 1e-16 and a zero of its own.
+    const MeshDesc mesh = mesh_of({{0, 0, 0},
+                                   {1, 0, 0},
+                                   {1, 1, 0},
+                                   {0, 1, 0},
+                                   {1 + 2.3e-16, -2.4e-16, 0},
+                                   {2, 0, 0},
+                                   {2, 1, 0},
+                                   {1, 1, 1e-17}},
+                                  {{0, 1, 2, 3}, {4, 5, 6, 7}});
+    CHECK(make_cage(mesh, false).edges.size() == 7);
+}
+
 TEST_CASE("subdivide: a soup of faces without order is evaluated, each in its place") {
     for (std::uint32_t seed = 0; seed < 60; ++seed) {
         Random random(seed);
