@@ -242,7 +242,7 @@ void ShaderProgram::compile_relief() {
     const bool bends = bends_normal() || bends_coat_normal(),
                turns = turns_tangent() || turns_coat_tangent();
     facts_.tangent |= bends || turns;
-    facts_.geometry |= bends || turns;
+    facts_.geometry |= turns || m_.bump.varies();
     facts_.textured |= bends || turns;
 }
 

@@ -150,8 +150,10 @@ ShadeInput shade_input(const Scene& scene, const ShaderProgram* program, const H
     }
     if constexpr (F.vertex_colors) in.vertex_color = s.vertex_color;
     if constexpr (F.textures) {
-        if (program && program->facts().geometry) {
-            place_input(scene, s, in);
+        const bool placed = program && program->facts().geometry;
+        if (placed) place_input(scene, s, in);
+        if (placed || (program && program->facts().tangent)) {
+            if (!placed) orient_input(s, in);
             in.front = dot(s.ng, d) <= 0.0f;
             if (!in.front) in.n = -s.ns;
             in.facing = std::fabs(dot(s.ns, d));

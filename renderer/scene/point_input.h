@@ -7,19 +7,24 @@
 
 namespace tessera {
 
+/// The part that says how a surface lies, its normal outward: all that a normal map needs.
+inline void orient_input(const SurfacePoint& s, ShadeInput& in) {
+    in.n = s.ns;
+    in.front = true;
+    in.dpdu = s.dpdu, in.dpdv = s.dpdv, in.handed = s.handed;
+}
+
 /// The part of a ShadeInput that says where a point lies; its normal looks outward.
 inline void place_input(const Scene& scene, const SurfacePoint& s, ShadeInput& in) {
     const Placement& placed = scene.geometry().placements[s.placement];
     in.p_object = placed.to_object.point(s.p);
     in.object_scale = placed.object_scale;
     in.p_world = Vec3f(Vec3d(s.p) + scene.origin());
-    in.n = s.ns;
-    in.front = true;
+    orient_input(s, in);
     in.instance = s.placement;
     in.to_object = &placed.to_object;
     if (placed.kind == PlacedKind::mesh)
         in.creases = &scene.geometry().meshes[placed.shape].creases;
-    in.dpdu = s.dpdu, in.dpdv = s.dpdv, in.handed = s.handed;
 }
 
 /// The point as a ray along d sees it; d need not be of unit length.
