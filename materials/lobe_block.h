@@ -5,15 +5,8 @@
 #include <bit>
 #include <tuple>
 
-#include "materials/lobes/diffuse.h"
-#include "materials/lobes/eon.h"
-#include "materials/lobes/framed.h"
-#include "materials/lobes/fuzz.h"
-#include "materials/lobes/glass.h"
-#include "materials/lobes/reflection.h"
-#include "materials/lobes/subsurface.h"
+#include "materials/lobe_event.h"
 #include "materials/terminator.h"
-#include "materials/thin_film.h"
 #include "renderer/core/sampler.h"
 
 namespace tessera {
@@ -27,13 +20,6 @@ struct LobeSamples {
     float spread[kLanes];       // half angle by which the ray cone grows
     std::uint32_t cls[kLanes];  // LobeClass
 };
-
-/// Lobes that scatter light from everywhere to everywhere; the others mirror and refract.
-template <class Model>
-inline constexpr bool kMatte =
-    std::is_same_v<Model, DiffuseLobe> || std::is_same_v<Model, EonLobe> ||
-    std::is_same_v<Model, FuzzLobe> || std::is_same_v<Model, DiffuseTransmission> ||
-    std::is_same_v<Model, SubsurfaceEntry>;
 
 template <class Model>
 struct LobesOfKind {
@@ -162,6 +148,39 @@ public:
                 sum += kind.weight[lane] * kind.model.get(lane).albedo(wo[lane]);
         });
         return sum;
+    }
+    /// Values towards wi of a lane's lobes that are not smooth, by event.
+    EventColors values(int lane, Vec3f wi, LobePart part) const noexcept {
+        EventColors out;
+        each_kind([&](const auto& kind) {
+            using Model = typename std::remove_cvref_t<decltype(kind)>::Kind;
+            if constexpr (!Model::kDelta) {
+                if (!(kind.chance[lane] > 0.0f)) return;
+                if (part != LobePart::all && kMatte<Model> != (part == LobePart::matte)) return;
+                out[event_of<Model>(wi.z < 0.0f)] += share<Model>(kind, lane, wi).f;
+            }
+        });
+        return out;
+    }
+    /// The event of the lobe that sample() took, which sent the path towards wi.
+    LobeEvent taken_event(int lane, Vec3f wi) const noexcept {
+        LobeEvent event = LobeEvent::diffuse;
+        each_kind([&](const auto& kind) {
+            using Model = typename std::remove_cvref_t<decltype(kind)>::Kind;
+            if (number_of(kind) == chosen_[lane]) event = event_of<Model>(wi.z < 0.0f);
+        });
+        return event;
+    }
+    /// As albedo(), by event; what lets light through counts whole as that.
+    EventColors albedos(int lane) const noexcept {
+        EventColors out;
+        each_kind([&](const auto& kind) {
+            using Model = typename std::remove_cvref_t<decltype(kind)>::Kind;
+            if (kind.chance[lane] > 0.0f)
+                out[event_of<Model>(true)] +=
+                    kind.weight[lane] * kind.model.get(lane).albedo(wo[lane]);
+        });
+        return out;
     }
     /// Weight of a lane's lobe of one kind.
     template <class Model>

@@ -206,6 +206,7 @@ struct MaterialDesc {
     DisplacementSpace displacement_space = DisplacementSpace::tangent;
 
     int dielectric_priority = 0;    // of nested glass the higher number fills the overlap
+    std::string light_group;        // of what it emits
     bool use_vertex_color = false;  // base_color is multiplied by the mesh's vertex colours
     std::optional<ReflectionMapDesc> reflection_map;
 };
@@ -346,6 +347,7 @@ struct LightDesc {
     std::string name;
     SourceLoc loc;
     bool visible = true;  // to camera rays; area lights only
+    std::string light_group;
     std::variant<PointLightDesc, SpotLightDesc, DistantLightDesc, QuadLightDesc, DiscLightDesc,
                  SphereLightDesc>
         shape;
@@ -363,6 +365,7 @@ struct EnvironmentDesc {
     Float3 radiance{1, 1, 1};  // constant, or the factor on the image
     double rotate_deg = 0;     // about +y
     bool visible = true;       // to camera rays
+    std::string light_group;
 };
 
 /// Whether it reads any picture.
@@ -389,6 +392,7 @@ struct SkyDesc {
     float intensity = 1;
     bool sun = true;      // with its disc
     bool visible = true;  // to camera rays
+    std::string light_group;
 };
 
 // ---- camera, film, settings
@@ -434,6 +438,7 @@ struct FilmDesc {
     double filter_width_px = 3;                // full width of the support
     std::string working_space = "lin_rec709";  // or "acescg"
     std::vector<std::string> aovs;             // beyond beauty; empty = Z, N, P, albedo
+    double ao_distance = 0;  // how far ambient occlusion looks, scene units; 0 = without end
 };
 
 enum class Integrator : std::uint8_t { path, whitted };

@@ -12,8 +12,8 @@
 #include "renderer/api/error.h"
 #include "renderer/cli/commands.h"
 #include "renderer/cli/console.h"
+#include "renderer/core/nearest_name.h"
 #include "renderer/core/parallel.h"
-#include "renderer/io/nearest_name.h"
 
 namespace {
 

@@ -5,8 +5,6 @@
 #include <chrono>
 #include <cmath>
 
-#include "renderer/film/film.h"
-
 namespace tessera {
 namespace {
 
@@ -97,7 +95,8 @@ void SceneOptions::add_to(CLI::App& app) {
         ->check(CLI::Range(-1000000, 1000000));
     app.add_option(
         "--aov", aovs,
-        "A pass beyond beauty: Z, N, P, albedo (repeatable; default all; 'beauty' alone: none)");
+        "A pass beyond beauty, a preset (compositing, lookdev, ...), light_groups, PASS@groups or "
+        "'NAME = LIGHT PATH EXPRESSION' (repeatable; see --list-aovs; 'beauty' alone: none)");
     app.add_option("--set", set,
                    "Any key of the scene file, for example --set camera.fov_deg=35 (repeatable)");
     app.add_option("-t,--threads", threads,
@@ -130,11 +129,6 @@ void SceneOptions::add_to(CLI::App& app) {
 SceneDesc SceneOptions::load(double& load_s) const {
     const auto start = std::chrono::steady_clock::now();
     if (tile % 4 != 0) usage("--tile " + std::to_string(tile) + ": must be a multiple of 4");
-    FilmLayers known;
-    for (const std::string& name : aovs) {
-        if (!enable_layer(name, known))
-            usage("--aov " + name + ": unknown, there are beauty, Z, N, P and albedo");
-    }
     const std::vector<int> size = res.empty() ? std::vector<int>{} : parse_resolution(res);
     const PixelWindow window = crop.empty() ? PixelWindow{} : parse_crop(crop);
     const std::optional<Double3> position = parse_position(camera_position);

@@ -1,7 +1,11 @@
 #include "renderer/core/sampler.h"
 
+#include <bit>
+
 namespace tessera {
 namespace {
+
+constexpr int kFew = 3;  // lanes that are drawn for one by one
 
 inline std::uint32_t reverse_bits(std::uint32_t x) {
     x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
@@ -76,6 +80,26 @@ Vec2f sample_pair(std::uint32_t pixel_seed, std::uint32_t index, std::uint32_t p
 
 float sample_single(std::uint32_t pixel_seed, std::uint32_t index, std::uint32_t pair) noexcept {
     return Scramble(pixel_seed, reverse_bits(index), pair).x();
+}
+
+void draw_lanes(LaneMask lanes, const std::uint32_t (&pixel_seeds)[kLanes], std::uint32_t index,
+                std::uint32_t pair, SamplePairs& out) noexcept {
+    if (std::popcount(lanes) > kFew) return sample_pairs(pixel_seeds, index, pair, out);
+    for (; lanes != 0; lanes &= lanes - 1) {
+        const int i = std::countr_zero(lanes);
+        const Vec2f p = sample_pair(pixel_seeds[i], index, pair);
+        out.x[i] = p.x;
+        out.y[i] = p.y;
+    }
+}
+
+void draw_lanes(LaneMask lanes, const std::uint32_t (&pixel_seeds)[kLanes], std::uint32_t index,
+                std::uint32_t pair, float (&out)[kLanes]) noexcept {
+    if (std::popcount(lanes) > kFew) return sample_singles(pixel_seeds, index, pair, out);
+    for (; lanes != 0; lanes &= lanes - 1) {
+        const int i = std::countr_zero(lanes);
+        out[i] = sample_single(pixel_seeds[i], index, pair);
+    }
 }
 
 }  // namespace tessera

@@ -25,6 +25,7 @@ inline constexpr std::uint32_t kLight = 0;   // point on the light
 inline constexpr std::uint32_t kChoice = 1;  // x: which light, y: which lobe
 inline constexpr std::uint32_t kBsdf = 2;    // direction
 inline constexpr std::uint32_t kRoulette = 3;
+inline constexpr std::uint32_t kOcclusion = 4;  // a pass
 constexpr std::uint32_t vertex(std::uint32_t depth, std::uint32_t use) {
     return kFirstVertex + depth * kPairsPerVertex + use;
 }
@@ -65,5 +66,11 @@ Vec2f sample_pair(std::uint32_t pixel_seed, std::uint32_t index, std::uint32_t p
 void sample_singles(const std::uint32_t (&pixel_seeds)[kLanes], std::uint32_t index,
                     std::uint32_t pair, float (&out)[kLanes]) noexcept;
 float sample_single(std::uint32_t pixel_seed, std::uint32_t index, std::uint32_t pair) noexcept;
+
+/// The same points for some lanes: all at once, which is vectorised, or the few one by one.
+void draw_lanes(LaneMask lanes, const std::uint32_t (&pixel_seeds)[kLanes], std::uint32_t index,
+                std::uint32_t pair, SamplePairs& out) noexcept;
+void draw_lanes(LaneMask lanes, const std::uint32_t (&pixel_seeds)[kLanes], std::uint32_t index,
+                std::uint32_t pair, float (&out)[kLanes]) noexcept;
 
 }  // namespace tessera

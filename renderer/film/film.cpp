@@ -1,52 +1,211 @@
 #include "renderer/film/film.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace tessera {
 namespace {
+
+// How a pass's samples become its pixel.
+enum class How { sums, nearest, counts };
+
+How how(PassSource s) {
+    switch (s) {
+        case PassSource::z:
+            return How::counts;  // the depth that decides which sample is nearest
+        case PassSource::p:
+        case PassSource::pref:
+        case PassSource::uv:
+        case PassSource::object_id:
+        case PassSource::material_id:
+            return How::nearest;
+        case PassSource::sample_count:
+            return How::counts;
+        default:
+            return How::sums;
+    }
+}
+
+bool wants_nearest(const Pass& p) {
+    return p.source == PassSource::z || how(p.source) == How::nearest;
+}
+
+// Numbers that are summed up for a pixel.
+std::size_t sums_of(const Pass& p) {
+    return p.source == PassSource::shadow_matte ? 2 : p.channels.size();
+}
+
+void add(Sum* sums, Vec3f v) {
+    sums[0].add(static_cast<double>(v.x));
+    sums[1].add(static_cast<double>(v.y));
+    sums[2].add(static_cast<double>(v.z));
+}
+
+double sum_of(Color c) {
+    return static_cast<double>(c.x) + static_cast<double>(c.y) + static_cast<double>(c.z);
+}
 
 template <class T>
 std::size_t capacity_bytes(const std::vector<T>& v) {
     return v.capacity() * sizeof(T);
 }
 
+template <class T>
+std::span<std::byte> bytes_of(std::vector<T>& v) {
+    return std::as_writable_bytes(std::span(v));
+}
+
 }  // namespace
 
-bool enable_layer(const std::string& name, FilmLayers& layers) {
-    if (name == "beauty") return true;
-    if (name == "Z") return layers.z = true;
-    if (name == "N") return layers.n = true;
-    if (name == "P") return layers.p = true;
-    if (name == "albedo") return layers.albedo = true;
-    return false;
+void PassSamples::clear() {
+    for (FirstHit& f : first) f = FirstHit{};
+    std::fill(light.begin(), light.end(), Color(0.0f));
+    std::fill(event_albedos.begin(), event_albedos.end(), Color(0.0f));
 }
 
-std::vector<std::string> layer_names() { return {"beauty", "Z", "N", "P", "albedo"}; }
-
-Film::Film(const PixelWindow& window, const FilmLayers& layers)
-    : window_(window), enabled_(layers) {
-    const std::size_t n = std::size_t(window.width()) * window.height();
+Film::Film(const PixelWindow& window, Passes passes)
+    : window_(window), passes_(std::move(passes)), planes_(passes_.size()) {
+    const std::size_t n =
+        static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
     beauty_.resize(n);
-    if (layers.albedo) albedo_.resize(n);
-    if (layers.n) normal_.resize(n);
-    if (layers.z || layers.p) depth_.resize(n, kEmptyDepth);
-    if (layers.p) position_.resize(n);
+    if (std::any_of(passes_.begin(), passes_.end(), wants_nearest)) nearest_.resize(n);
+    for (std::size_t p = 0; p < passes_.size(); ++p) {
+        const Pass& pass = passes_[p];
+        if (how(pass.source) == How::sums) planes_[p].sums.resize(n * sums_of(pass));
+        if (how(pass.source) == How::nearest) planes_[p].nearest.resize(n * pass.channels.size());
+        light_passes_ += pass.source == PassSource::light_paths;
+        event_albedos_ |= pass.source == PassSource::event_albedo;
+    }
 }
 
-void Film::add(int x, int y, const PathSample& s) noexcept {
-    const std::size_t i = std::size_t(y - window_.y0) * window_.width() + (x - window_.x0);
+PassSamples Film::pass_samples() const {
+    PassSamples s;
+    s.light.resize(static_cast<std::size_t>(light_passes_ * kLanes));
+    if (event_albedos_) s.event_albedos.resize(static_cast<std::size_t>(kLobeEvents * kLanes));
+    return s;
+}
+
+void Film::add(int x, int y, std::uint32_t index, const PathSample& s, const PassSamples* passes,
+               int lane) noexcept {
+    const std::size_t i = pixel(x, y);
     Beauty& b = beauty_[i];
-    b.r += static_cast<double>(s.radiance.x);
-    b.g += static_cast<double>(s.radiance.y);
-    b.b += static_cast<double>(s.radiance.z);
-    b.a += static_cast<double>(s.alpha);
+    tessera::add(b.rgb, s.radiance);
+    b.hits += s.alpha > 0.0f;
     ++b.samples;
-    if (!s.hit) return;
-    if (enabled_.albedo) albedo_[i].add(s.albedo);
-    if (enabled_.n) normal_[i].add(s.n);
-    if (!depth_.empty() && s.z < depth_[i]) {
-        depth_[i] = s.z;
-        if (enabled_.p) position_[i] = s.p;
+    if (passes) add_passes(i, index, s, *passes, lane);
+}
+
+void Film::add_passes(std::size_t i, std::uint32_t index, const PathSample& s,
+                      const PassSamples& passes, int lane) noexcept {
+    const FirstHit& f = passes.first[lane];
+    bool nearer = false;
+    if (!nearest_.empty() && f.hit) {
+        Nearest& nearest = nearest_[i];
+        nearer = f.z < nearest.z || (f.z == nearest.z && index < nearest.sample);
+        if (nearer) nearest = {f.z, index};
+    }
+    const Color* light = passes.light.data() + lane;
+    for (std::size_t p = 0; p < passes_.size(); ++p) {
+        const Pass& pass = passes_[p];
+        Sum* const sums = planes_[p].sums.data() + i * sums_of(pass);
+        float* const value = planes_[p].nearest.data() + i * pass.channels.size();
+        const auto put = [&](Vec3f v) {
+            if (nearer) value[0] = v.x, value[1] = v.y, value[2] = v.z;
+        };
+        switch (pass.source) {
+            case PassSource::z:
+            case PassSource::sample_count:
+                break;
+            case PassSource::depth:
+                if (f.hit) sums->add(static_cast<double>(f.z));
+                break;
+            case PassSource::p:
+                put(f.p);
+                break;
+            case PassSource::pref:
+                put(f.pref);
+                break;
+            case PassSource::uv:
+                put({f.uv.x, f.uv.y, f.has_uv ? 1.0f : 0.0f});
+                break;
+            case PassSource::n:
+                if (f.hit) tessera::add(sums, f.n);
+                break;
+            case PassSource::ng:
+                if (f.hit) tessera::add(sums, f.ng);
+                break;
+            case PassSource::facing:
+                if (f.hit) sums->add(static_cast<double>(f.facing));
+                break;
+            case PassSource::albedo:
+                tessera::add(sums, f.albedo);
+                break;
+            case PassSource::event_albedo: {
+                Color sum(0.0f);
+                for (std::uint32_t m = pass.events; m != 0; m &= m - 1)
+                    sum += passes.event_albedos[static_cast<std::size_t>(
+                        std::countr_zero(m) * kLanes + lane)];
+                tessera::add(sums, sum);
+                break;
+            }
+            case PassSource::light_paths:
+                tessera::add(sums, *light);
+                light += kLanes;
+                break;
+            case PassSource::shadow:
+                tessera::add(sums, f.shadowed);
+                break;
+            case PassSource::shadow_matte:
+                sums[0].add(sum_of(f.shadowed));
+                sums[1].add(sum_of(f.unshadowed));
+                break;
+            case PassSource::ao:
+                if (f.hit) sums->add(static_cast<double>(f.ao));
+                break;
+            case PassSource::object_id:
+                if (nearer) *value = static_cast<float>(f.object);
+                break;
+            case PassSource::material_id:
+                if (nearer) *value = static_cast<float>(f.material);
+                break;
+            case PassSource::seconds:
+                sums->add(static_cast<double>(passes.seconds[lane]));
+                break;
+            case PassSource::variance: {
+                const Vec3d v(s.radiance);
+                sums[0].add(v.x * v.x), sums[1].add(v.y * v.y), sums[2].add(v.z * v.z);
+                break;
+            }
+        }
+    }
+}
+
+void Film::merge(const Film& other) {
+    const PixelWindow& w = other.window_;
+    for (int y = w.y0; y < w.y1; ++y) {
+        for (int x = w.x0; x < w.x1; ++x) {
+            const std::size_t to = pixel(x, y), from = other.pixel(x, y);
+            for (int c = 0; c < 3; ++c) beauty_[to].rgb[c].add(other.beauty_[from].rgb[c]);
+            beauty_[to].hits += other.beauty_[from].hits;
+            beauty_[to].samples += other.beauty_[from].samples;
+            bool nearer = false;
+            if (!nearest_.empty()) {
+                Nearest& a = nearest_[to];
+                const Nearest& b = other.nearest_[from];
+                nearer = b.z < a.z || (b.z == a.z && b.sample < a.sample);
+                if (nearer) a = b;
+            }
+            for (std::size_t p = 0; p < planes_.size(); ++p) {
+                Plane& plane = planes_[p];
+                const Plane& add = other.planes_[p];
+                const std::size_t sums = plane.sums.empty() ? 0 : sums_of(passes_[p]);
+                for (std::size_t c = 0; c < sums; ++c)
+                    plane.sums[to * sums + c].add(add.sums[from * sums + c]);
+                const std::size_t values = plane.nearest.empty() ? 0 : passes_[p].channels.size();
+                for (std::size_t c = 0; nearer && c < values; ++c)
+                    plane.nearest[to * values + c] = add.nearest[from * values + c];
+            }
+        }
     }
 }
 
@@ -57,45 +216,86 @@ std::vector<Layer> Film::layers() const {
     for (std::size_t i = 0; i < n; ++i) {
         const Beauty& b = beauty_[i];
         const double w = b.samples > 0 ? 1.0 / b.samples : 0.0;
-        float* p = &beauty.pixels[i * 4];
-        p[0] = static_cast<float>(b.r * w), p[1] = static_cast<float>(b.g * w);
-        p[2] = static_cast<float>(b.b * w), p[3] = static_cast<float>(b.a * w);
+        for (std::size_t c = 0; c < 3; ++c)
+            beauty.pixels[i * 4 + c] = static_cast<float>(b.rgb[c].value() * w);
+        beauty.pixels[i * 4 + 3] = static_cast<float>(b.hits * w);
     }
     out.push_back(std::move(beauty));
-    if (enabled_.z) out.push_back({"", {"Z"}, LayerKind::data, depth_});
-    const auto mean = [&](const char* name, std::vector<std::string> channels, LayerKind kind,
-                          const std::vector<Triple>& sums) {
-        Layer layer{name, std::move(channels), kind, std::vector<float>(n * 3)};
-        for (std::size_t i = 0; i < n; ++i) {
-            // Colour is premultiplied by coverage as beauty is; data is the mean over what was hit.
-            const double count = kind == LayerKind::color ? beauty_[i].samples : beauty_[i].a;
-            const double w = count > 0 ? 1.0 / count : 0.0;
-            layer.pixels[i * 3] = static_cast<float>(sums[i].x * w);
-            layer.pixels[i * 3 + 1] = static_cast<float>(sums[i].y * w);
-            layer.pixels[i * 3 + 2] = static_cast<float>(sums[i].z * w);
-            // Albedo is a colour of at most 1; single samples of it may be more.
-            for (int c = 0; kind == LayerKind::color && c < 3; ++c) {
-                layer.pixels[i * 3 + c] = std::min(layer.pixels[i * 3 + c], 1.0f);
-            }
-        }
-        out.push_back(std::move(layer));
-    };
-    if (enabled_.n) mean("N", {"X", "Y", "Z"}, LayerKind::data, normal_);
-    if (enabled_.p) {
-        Layer layer{"P", {"X", "Y", "Z"}, LayerKind::data, std::vector<float>(n * 3)};
-        for (std::size_t i = 0; i < n; ++i) {
-            layer.pixels[i * 3] = position_[i].x, layer.pixels[i * 3 + 1] = position_[i].y,
-                             layer.pixels[i * 3 + 2] = position_[i].z;
-        }
-        out.push_back(std::move(layer));
-    }
-    if (enabled_.albedo) mean("albedo", {"R", "G", "B"}, LayerKind::color, albedo_);
+    for (std::size_t p = 0; p < passes_.size(); ++p)
+        out.push_back(layer_of(passes_[p], planes_[p]));
     return out;
 }
 
+Layer Film::layer_of(const Pass& pass, const Plane& plane) const {
+    const std::size_t n = beauty_.size(), channels = pass.channels.size();
+    Layer layer{pass.name, pass.channels, pass.kind, std::vector<float>(n * channels)};
+    for (std::size_t i = 0; i < n; ++i) {
+        const Beauty& b = beauty_[i];
+        const double each = b.samples > 0 ? 1.0 / b.samples : 0.0;
+        float* const out = &layer.pixels[i * channels];
+        const Sum* const sums = plane.sums.data() + i * sums_of(pass);
+        switch (pass.source) {
+            case PassSource::z:
+                *out = std::min(nearest_[i].z, kEmptyDepth);
+                break;
+            case PassSource::sample_count:
+                *out = static_cast<float>(b.samples);
+                break;
+            case PassSource::seconds:
+                *out = static_cast<float>(sums->value());
+                break;
+            case PassSource::shadow_matte: {
+                const double all = sums[1].value();
+                *out = all > 0 ? static_cast<float>(sums[0].value() / all) : 0.0f;
+                break;
+            }
+            case PassSource::variance:
+                for (std::size_t c = 0; c < channels; ++c) {
+                    const double sum = b.rgb[c].value(), count = b.samples;
+                    const double v =
+                        count > 1 ? (sums[c].value() - sum * sum * each) / (count * (count - 1))
+                                  : 0.0;
+                    out[c] = static_cast<float>(std::max(v, 0.0));
+                }
+                break;
+            default: {
+                if (!plane.nearest.empty()) {
+                    std::copy_n(&plane.nearest[i * channels], channels, out);
+                    break;
+                }
+                // Colour is premultiplied by coverage as beauty is; data is the mean over what was
+                // hit.
+                const double hit = b.hits > 0 ? 1.0 / b.hits : 0.0;
+                const double w = pass.kind == LayerKind::color ? each : hit;
+                const bool albedo =
+                    pass.source == PassSource::albedo || pass.source == PassSource::event_albedo;
+                for (std::size_t c = 0; c < channels; ++c) {
+                    out[c] = static_cast<float>(sums[c].value() * w);
+                    // A colour of at most 1; single samples of it may be more.
+                    if (albedo) out[c] = std::min(out[c], 1.0f);
+                }
+            }
+        }
+    }
+    return layer;
+}
+
 std::size_t Film::bytes() const noexcept {
-    return capacity_bytes(beauty_) + capacity_bytes(albedo_) + capacity_bytes(normal_) +
-           capacity_bytes(depth_) + capacity_bytes(position_);
+    std::size_t sum = capacity_bytes(beauty_) + capacity_bytes(nearest_);
+    for (const Plane& p : planes_) sum += capacity_bytes(p.sums) + capacity_bytes(p.nearest);
+    return sum;
+}
+
+std::vector<Film::Array> Film::arrays() {
+    std::vector<Array> out{{"beauty", bytes_of(beauty_)}};
+    if (!nearest_.empty()) out.push_back({"nearest", bytes_of(nearest_)});
+    for (std::size_t p = 0; p < planes_.size(); ++p) {
+        const std::string name = passes_[p].name.empty() ? "Z" : passes_[p].name;
+        if (!planes_[p].sums.empty()) out.push_back({name + ".sums", bytes_of(planes_[p].sums)});
+        if (!planes_[p].nearest.empty())
+            out.push_back({name + ".nearest", bytes_of(planes_[p].nearest)});
+    }
+    return out;
 }
 
 }  // namespace tessera

@@ -2,69 +2,112 @@
 // Samples to layers. Tiles own disjoint pixels and write straight into the film: no locks, no
 // merging.
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "renderer/api/image.h"
+#include "renderer/core/light_event.h"
+#include "renderer/core/ray.h"
+#include "renderer/core/sum.h"
 #include "renderer/core/vec.h"
+#include "renderer/film/pass.h"
 
 namespace tessera {
 
 /// What one camera path gives to its pixel.
 struct PathSample {
     Color radiance{0.0f};
-    float alpha = 0;   // 1 where the camera ray hit something
-    bool hit = false;  // the fields below are there; only with alpha 1
-    float z = 0;       // camera-space depth
-    Vec3f p;           // world position
-    Vec3f n{};         // shading normal facing the camera
+    float alpha = 0;  // 1 where the camera ray hit something
+};
+
+/// What its first surface gives to the passes.
+struct FirstHit {
+    bool hit = false;  // else nothing below but the albedo is there
+    bool has_uv = false;
+    float z = 0;    // camera-space depth
+    Vec3f p, pref;  // in the world, in the object's own space
+    Vec3f n, ng;    // facing the camera
+    Vec2f uv;
+    float facing = 0;
+    float ao = 1;                           // 1: open
+    std::int32_t object = 0, material = 0;  // numbers from 1; 0: none
     Color albedo{0.0f};
+    Color shadowed{0.0f}, unshadowed{0.0f};  // light of lamps that is kept off; all of it
 };
 
-/// Passes beyond beauty.
-struct FilmLayers {
-    bool z = false, n = false, p = false, albedo = false;
-    bool any() const { return z || n || p || albedo; }
-};
+/// What a block's samples give beyond beauty. Of one worker, cleared for every block.
+struct PassSamples {
+    FirstHit first[kLanes];
+    std::vector<Color> light;          // of the passes of light paths: [pass * kLanes + lane]
+    std::vector<Color> event_albedos;  // [event * kLanes + lane]
+    float seconds[kLanes]{};
 
-/// The names that --aov and film.aovs take. False for an unknown one.
-bool enable_layer(const std::string& name, FilmLayers& layers);
-std::vector<std::string> layer_names();
+    void clear();
+};
 
 class Film {
 public:
     static constexpr float kEmptyDepth = 1e10f;
 
-    Film(const PixelWindow& window, const FilmLayers& layers);
+    Film(const PixelWindow& window, Passes passes);
 
     const PixelWindow& window() const noexcept { return window_; }
-    /// x, y absolute in the frame, within the window. One thread at a time per pixel; samples in
-    /// index order.
-    void add(int x, int y, const PathSample& s) noexcept;
+    const Passes& passes() const noexcept { return passes_; }
+    /// A worker's place for what the passes take.
+    PassSamples pass_samples() const;
+    /// x, y absolute in the frame, within the window. One thread at a time per pixel. passes: null
+    /// for beauty alone; index: of the sample.
+    void add(int x, int y, std::uint32_t index, const PathSample& s, const PassSamples* passes,
+             int lane) noexcept;
+    /// Samples that the pixel has.
+    std::uint32_t samples(int x, int y) const noexcept { return beauty_[pixel(x, y)].samples; }
+    /// Adds a film of the same passes whose window lies within this one; the bits of the sum do not
+    /// depend on the order.
+    void merge(const Film& other);
     /// Means of what was added.
     std::vector<Layer> layers() const;
     std::size_t bytes() const noexcept;
 
+    /// All that the film holds, as named arrays of plain numbers: what a checkpoint saves.
+    struct Array {
+        std::string name;
+        std::span<std::byte> bytes;
+    };
+    std::vector<Array> arrays();
+
 private:
-    // Sums in double: a million samples lose nothing.
     struct Beauty {
-        double r = 0, g = 0, b = 0, a = 0;
-        std::uint32_t samples = 0;
+        Sum rgb[3];
+        std::uint32_t hits = 0, samples = 0;
     };
-    struct Triple {
-        double x = 0, y = 0, z = 0;
-        void add(Vec3f v) {
-            x += static_cast<double>(v.x), y += static_cast<double>(v.y),
-                z += static_cast<double>(v.z);
-        }
+    struct Nearest {
+        float z = kInfinity;
+        std::uint32_t sample = 0;  // of equally near ones the first
     };
+    // One pass: sums or the nearest sample's values, channels interleaved; none where beauty's
+    // counts say it all.
+    struct Plane {
+        std::vector<Sum> sums;
+        std::vector<float> nearest;
+    };
+    std::size_t pixel(int x, int y) const noexcept {
+        return std::size_t(y - window_.y0) * static_cast<std::size_t>(window_.width()) +
+               static_cast<std::size_t>(x - window_.x0);
+    }
+    void add_passes(std::size_t i, std::uint32_t index, const PathSample& s,
+                    const PassSamples& passes, int lane) noexcept;
+    Layer layer_of(const Pass& pass, const Plane& plane) const;
+
     PixelWindow window_;
-    FilmLayers enabled_;
+    Passes passes_;
     std::vector<Beauty> beauty_;
-    std::vector<Triple> albedo_, normal_;
-    std::vector<float> depth_;     // of the nearest sample: depth does not average
-    std::vector<Vec3f> position_;  // of the same sample
+    std::vector<Nearest> nearest_;
+    std::vector<Plane> planes_;  // as passes_
+    int light_passes_ = 0;
+    bool event_albedos_ = false;
 };
 
 }  // namespace tessera

@@ -43,6 +43,25 @@ public:
         return matte + part(true, own ? scene_.lights().reflection(light.wi[i]) : radiance);
     }
 
+    /// Shares of that by event.
+    template <class Lobes>
+    EventColors shares_of_light(int i, const Lobes& lobes, Vec3f wi,
+                                const LightSamples& light) const {
+        EventColors sum;
+        const auto part = [&](LobePart which, bool specular, Color radiance) {
+            const float pdf = lobes.eval(i, wi, specular).pdf;
+            const float mis = light.delta[i] ? 1.0f : mis_power(light.pdf[i], pdf);
+            const EventColors values = lobes.values(i, wi, which);
+            for (int e = 0; e < kLobeEvents; ++e) sum.of[e] += values.of[e] * radiance * mis;
+        };
+        const Color radiance = light.radiance[i];
+        part(LobePart::matte, false, radiance);
+        if (map_[i] && wi.z > 0.0f) return sum;
+        const bool own = light.surroundings[i] && scene_.lights().own_reflection();
+        part(LobePart::specular, true, own ? scene_.lights().reflection(light.wi[i]) : radiance);
+        return sum;
+    }
+
     /// Weighs the lobes' samples. Returns the lanes that still have one.
     template <class Lobes>
     LaneMask weigh_samples(LaneMask lanes, const Lobes& lobes, LobeSamples& samples) noexcept {

@@ -16,6 +16,7 @@ namespace tessera {
 
 inline constexpr int kBlockSize = 4;
 
+class PathPasses;
 class RayLog;
 
 /// What one worker counts; added up at the end.
@@ -37,8 +38,8 @@ struct Counters {
 struct BlockJob {
     const Scene* scene = nullptr;
     const FilterSampler* filter = nullptr;
-    bool layers = false;  // passes beyond beauty are wanted
-    int x = 0, y = 0;     // top left pixel, multiples of 4
+    PathPasses* passes = nullptr;  // null: beauty alone
+    int x = 0, y = 0;              // top left pixel, multiples of 4
     LaneMask lanes = kAllLanes;
     std::uint32_t index = 0;        // of the sample
     std::uint32_t seeds[kLanes]{};  // of the pixels
@@ -55,6 +56,13 @@ BlockKernel find_kernel(Integrator integrator, std::string_view name);
 
 /// Seeds of a block's pixels.
 void seed_block(BlockJob& job, std::uint64_t seed) noexcept;
+
+/// Numbers that decide partial opacity for the rays of one step.
+inline void ray_seeds(const BlockJob& job, std::uint32_t step,
+                      std::uint32_t (&seeds)[kLanes]) noexcept {
+    const std::uint32_t salt = hash_combine(job.index, step);
+    for (int i = 0; i < kLanes; ++i) seeds[i] = hash_combine(job.seeds[i], salt);
+}
 
 /// Where the samples of all lanes lie on the film, in pixels.
 void film_points(const BlockJob& job, SamplePairs& out) noexcept;

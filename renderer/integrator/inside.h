@@ -46,6 +46,8 @@ public:
         const Medium* here = medium();
         return walked || !here || here->empty() ? Color(1.0f) : transmittance(*here, way);
     }
+    /// Whether that is a body whose surface light entered by subsurface scattering.
+    bool in_body() const noexcept { return walking_; }
     /// The path arrived at the surface of the body that it was in: there it is diffuse light.
     bool leaves_body() const noexcept { return leaves_body_; }
 

@@ -14,6 +14,8 @@
 #include "renderer/integrator/apart.h"
 #include "renderer/integrator/block.h"
 #include "renderer/integrator/inside.h"
+#include "renderer/integrator/pass_shares.h"
+#include "renderer/integrator/path_depth.h"
 #include "renderer/integrator/ray_log.h"
 #include "renderer/integrator/shading.h"
 #include "renderer/integrator/walk.h"
@@ -28,7 +30,8 @@ public:
           scene_(*job.scene),
           settings_(scene_.settings()),
           out_(out),
-          counters_(counters) {}
+          counters_(counters),
+          passes_(job.passes) {}
 
     void trace() noexcept {
         start_paths();
@@ -40,8 +43,8 @@ public:
                            F.vertex_colors, surface_.array());
             each(alive_, [&](int i) { arrive(i, depth); });
             face_viewer();
-            find_lobes();
-            sample_lights();
+            find_lobes(depth);
+            sample_lights(depth);
             scatter(depth);
             occlude(depth);
             alive_ |= passing_;
@@ -50,21 +53,12 @@ public:
     }
 
 private:
-    // Up to so many lanes are drawn for one by one.
-    static constexpr int kFew = 3;
-
     // Calls f(lane) for every lane of the mask as it is now; f may take lanes out of `alive_`.
     template <class Function>
     static void each(LaneMask lanes, Function f) {
         for (; lanes != 0; lanes &= lanes - 1) f(std::countr_zero(lanes));
     }
     void stop(int i) noexcept { alive_ &= ~(1u << i); }
-
-    struct PathDepth {
-        std::uint16_t diffuse = 0, glossy = 0, transmission = 0;
-        bool last = false;  // the ray may still find light, nothing more
-        bool layers_done = false;
-    };
 
     // ---- camera
     void start_paths() noexcept {
@@ -73,6 +67,7 @@ private:
         if constexpr (F.lens) sample_pairs(job_.seeds, job_.index, dim::kLens, lens);
         const Camera& camera = scene_.camera();
         camera.rays(film, lens, job_.x, packet_.ray);
+        if (passes_) passes_->start(job_.lanes);
         each(job_.lanes, [&](int i) {
             out_[i] = PathSample{};
             ray_[i] = packet_.ray.get(i);
@@ -82,7 +77,7 @@ private:
             cone_width_[i] = camera.cone_width();
             cone_spread_[i] = camera.cone_spread();
             depth_[i] = {};
-            depth_[i].layers_done = !job_.layers;
+            depth_[i].layers_done = !passes_;
             if constexpr (kMedia<F>) inside_[i].reset();
             if (!traceable(ray_[i].o, ray_[i].d)) return invalid(InvalidCause::camera_ray, i);
             alive_ |= 1u << i;
@@ -96,7 +91,7 @@ private:
     void intersect(std::uint32_t depth) noexcept {
         const auto count = static_cast<std::uint64_t>(std::popcount(alive_));
         (depth == 0 ? counters_.rays.camera : counters_.rays.bounce) += count;
-        ray_seeds(2 * depth, seeds_);
+        ray_seeds(job_, 2 * depth, seeds_);
         if (depth == 0) {
             if (job_.log) job_.log->packet(packet_.ray, alive_, seeds_, false);
             scene_.accel().intersect(packet_, alive_, seeds_);
@@ -139,6 +134,8 @@ private:
         throughput_.set(i, throughput);
         // Light sampling could not have made a way that was scattered.
         if (end.scattered) bsdf_pdf_[i] = 0.0f;
+        if (passes_ && end.scattered && !inside_[i].in_body())
+            passes_->scatter(i, LobeEvent::volume);
         if (!end.arrived) return stop(i);
         hit_[i] = end.hit;
         ask_for_index(i);
@@ -156,37 +153,25 @@ private:
         Vec3Lanes d;
         Color seen[kLanes];
         each(escaped_, [&](int i) { d.set(i, ray_[i].d); });
-        scene_.lights().escaped(escaped_, apart_.sent(), d, bsdf_pdf_, depth == 0, seen);
+        scene_.lights().escaped(escaped_, apart_.sent(), d, bsdf_pdf_, depth == 0, seen, passes_);
+        if (passes_) passes_->escaped(throughput_);
         each(escaped_, [&](int i) {
             out_[i].radiance += throughput_[i] * seen[i];
             // What a mirror shows of the surroundings counts as white.
-            if (!depth_[i].layers_done && depth > 0) out_[i].albedo = throughput_[i];
+            if (!depth_[i].layers_done && depth > 0) passes_->first(i).albedo = throughput_[i];
         });
     }
 
     void draw_samples(std::uint32_t depth) noexcept {
-        if (scene_.lights().sampled()) draw(dim::vertex(depth, dim::kLight), light_u_);
-        draw(dim::vertex(depth, dim::kChoice), choice_u_);
-        draw(dim::vertex(depth, dim::kBsdf), bsdf_u_);
+        const auto draw = [&](std::uint32_t use, auto& out) {
+            draw_lanes(alive_, job_.seeds, job_.index, dim::vertex(depth, use), out);
+        };
+        if (scene_.lights().sampled()) draw(dim::kLight, light_u_);
+        draw(dim::kChoice, choice_u_);
+        draw(dim::kBsdf, bsdf_u_);
         if (depth >= static_cast<std::uint32_t>(settings_.min_depth)) {
-            draw(dim::vertex(depth, dim::kRoulette), roulette_u_);
+            draw(dim::kRoulette, roulette_u_);
         }
-    }
-
-    // All lanes at once are vectorised; a few alone are cheaper one by one. The points are the
-    // same.
-    void draw(std::uint32_t pair, SamplePairs& out) noexcept {
-        if (std::popcount(alive_) > kFew) return sample_pairs(job_.seeds, job_.index, pair, out);
-        each(alive_, [&](int i) {
-            const Vec2f p = sample_pair(job_.seeds[i], job_.index, pair);
-            out.x[i] = p.x;
-            out.y[i] = p.y;
-        });
-    }
-
-    void draw(std::uint32_t pair, float (&out)[kLanes]) noexcept {
-        if (std::popcount(alive_) > kFew) return sample_singles(job_.seeds, job_.index, pair, out);
-        each(alive_, [&](int i) { out[i] = sample_single(job_.seeds[i], job_.index, pair); });
     }
 
     // ---- arrive: the surface, and the light it sends of itself
@@ -221,7 +206,9 @@ private:
                 weight = mis_power(bsdf_pdf_[i], scene_.lights().pdf(s.light, {from_[i].p}, d, s.p,
                                                                      s.ng, s.material));
             }
-            out_[i].radiance += throughput_[i] * e * weight;
+            const Color light = throughput_[i] * e * weight;
+            out_[i].radiance += light;
+            if (passes_) passes_->end(i, label_of(scene_, s.material, s.light), light);
         }
         if (!program || depth_[i].last) stop(i);
     }
@@ -253,10 +240,8 @@ private:
         each(alive_, [&](int i) {
             const SurfacePoint& s = surface_[i];
             Vec3f viewer = -ray_[i].d;
-            if constexpr (kMedia<F>) {
-                // Light that comes out of a body is looked at from outside.
-                if (inside_[i].leaves_body()) viewer = ray_[i].d;
-            }
+            // Light that comes out of a body is looked at from outside.
+            if (leaves_body(i)) viewer = ray_[i].d;
             const bool front = dot(s.ng, viewer) >= 0.0f;
             frame_.front.is[i] = front;
             frame_.ng.set(i, front ? s.ng : -s.ng);
@@ -290,7 +275,7 @@ private:
         }
     }
 
-    void find_lobes() noexcept {
+    void find_lobes(std::uint32_t depth) noexcept {
         lobes_.clear();
         if constexpr (F.apart) apart_.clear();
         each(alive_, [&](int i) {
@@ -310,12 +295,12 @@ private:
         });
         lobes_.prepare();
         each(alive_, [&](int i) {
-            if (!depth_[i].layers_done) note_layers(i);
+            if (!depth_[i].layers_done) note_layers(i, depth);
         });
     }
 
     // ---- next-event estimation
-    void sample_lights() noexcept {
+    void sample_lights(std::uint32_t depth) noexcept {
         shadow_lanes_ = 0;
         if (!scene_.lights().sampled()) return;
         LaneMask lanes = alive_ & lobes_.extended();
@@ -334,6 +319,7 @@ private:
                 pending_.set(i, pending_[i] * transmittance(*medium, way));
             });
         }
+        if (passes_) each(lanes, [&](int i) { aim_passes(i, depth); });
         each(lanes, [&](int i) {
             if (!traceable(shadow_o_[i], shadow_d_[i])) return invalid(InvalidCause::shadow_ray, i);
             shadow_lanes_ |= 1u << i;
@@ -394,7 +380,7 @@ private:
     void occlude(std::uint32_t depth) noexcept {
         if (shadow_lanes_ == 0) return;
         counters_.rays.shadow += static_cast<std::uint64_t>(std::popcount(shadow_lanes_));
-        ray_seeds(2 * depth + 1, seeds_);
+        ray_seeds(job_, 2 * depth + 1, seeds_);
         const auto shadow = [&](int i) {
             return Ray{shadow_o_[i], shadow_d_[i], shadow_t_max_[i]};
         };
@@ -412,6 +398,11 @@ private:
             });
         }
         each(shadow_lanes_ & ~blocked, [&](int i) { out_[i].radiance += pending_[i]; });
+        if (!passes_) return;
+        each(shadow_lanes_ & ~blocked, [&](int i) { passes_->lit(i, pending_[i]); });
+        if (depth == 0 && passes_->wants_shadow())
+            each(shadow_lanes_,
+                 [&](int i) { passes_->shadow_found(i, ((blocked >> i) & 1u) != 0); });
     }
 
     // ---- scatter: the paths go on, or stop
@@ -420,6 +411,13 @@ private:
         if constexpr (F.apart) alive_ = apart_.weigh_samples(alive_, lobes_, scattered_);
         weigh_paths();
         alive_ &= leave_surfaces();
+        if (passes_ && passes_->wants_light()) {
+            each(alive_, [&](int i) {
+                if (!leaves_body(i))
+                    scatter_passes<F>(*passes_, i, lobes_, apart_, scattered_.wi[i],
+                                      bsdf_pdf_[i] == 0.0f);
+            });
+        }
         if constexpr (F.apart) read_reflection_maps();
         if (depth >= static_cast<std::uint32_t>(settings_.min_depth)) alive_ &= play_roulette();
         each(alive_, [&](int i) {
@@ -467,20 +465,8 @@ private:
         // Behind a mirror or clear glass the albedo is that of what is seen there.
         const auto cls = static_cast<LobeClass>(scattered_.cls[i]);
         if (bsdf_pdf_[i] > 0.0f || cls == LobeClass::subsurface) at.layers_done = true;
-        if (!at.layers_done) out_[i].albedo = Color(0.0f);
-        at.last = depth + 1 > static_cast<std::uint32_t>(settings_.max_depth);
-        switch (cls) {
-            case LobeClass::subsurface:
-            case LobeClass::diffuse:
-                at.last |= ++at.diffuse > settings_.max_diffuse_depth;
-                break;
-            case LobeClass::glossy:
-                at.last |= ++at.glossy > settings_.max_glossy_depth;
-                break;
-            case LobeClass::transmission:
-                at.last |= ++at.transmission > settings_.max_transmission_depth;
-                break;
-        }
+        if (!at.layers_done) passes_->first(i).albedo = Color(0.0f);
+        at.scatter(cls, depth, settings_);
         if (at.last && !scene_.emission_can_be_hit()) return false;
         if constexpr (kMedia<F>) {
             const ShaderProgram& program = scene_.program(surface_[i].material);
@@ -503,34 +489,53 @@ private:
         each(alive_ & apart_.lanes(), [&](int i) {
             const ReflectionMap* map = apart_.end(i, scattered_.wi[i]);
             if (!map) return;
-            out_[i].radiance += throughput_[i] * map->seen(surface_[i].p, next_d_[i]);
-            if (!depth_[i].layers_done && bsdf_pdf_[i] == 0.0f) out_[i].albedo = throughput_[i];
+            const Color light = throughput_[i] * map->seen(surface_[i].p, next_d_[i]);
+            out_[i].radiance += light;
+            if (passes_) passes_->end(i, LightType::surroundings, 0, light);
+            if (!depth_[i].layers_done && bsdf_pdf_[i] == 0.0f)
+                passes_->first(i).albedo = throughput_[i];
             stop(i);
         });
     }
 
     // ---- passes
-    void note_first_hit(int i, const SurfacePoint& s) noexcept {
+    void note_first_hit(int i, SurfacePoint& s) noexcept {
         out_[i].alpha = 1.0f;
-        if (!job_.layers) return;
-        PathSample& o = out_[i];
-        o.hit = true;
-        o.z = scene_.camera().depth(s.p);
-        o.p = Vec3f(Vec3d(s.p) + scene_.origin());
-        o.n = dot(s.ns, ray_[i].d) <= 0.0f ? s.ns : -s.ns;
+        if (passes_)
+            note_geometry(scene_, hit_[i], ray_[i].d, passes_->wants_uv(), s, passes_->first(i));
     }
 
     // Albedo of the first surface that is not a mirror or clear glass, as denoisers want it.
-    void note_layers(int i) noexcept { out_[i].albedo = throughput_[i] * lobes_.albedo(i); }
+    void note_layers(int i, std::uint32_t depth) noexcept {
+        passes_->first(i).albedo = throughput_[i] * lobes_.albedo(i);
+        if (depth != 0) return;
+        if (passes_->wants_albedos()) passes_->albedos(i, lobes_.albedos(i));
+        if (!passes_->wants_ao()) return;
+        const bool open = is_open(job_, frame_, i, p_[i], p_error_[i], seeds_[i], counters_);
+        passes_->first(i).ao = open ? 1.0f : 0.0f;
+    }
+
+    // What the light that was chosen will be to the passes, if nothing is in its way.
+    void aim_passes(int i, std::uint32_t depth) noexcept {
+        const LightLabel light = label_of(scene_, light_.material[i], light_.light[i]);
+        if (depth == 0 && passes_->wants_shadow()) {
+            // All of it, not the part that this way of sampling stands for.
+            const float ratio = lobes_.pdf(i) / light_.pdf[i];
+            passes_->shadow(i, pending_[i] * (light_.delta[i] ? 1.0f : 1.0f + ratio * ratio));
+        }
+        if (!passes_->wants_light()) return;
+        if (leaves_body(i)) return passes_->aim_unscattered(i, light);
+        passes_->aim(i, light_shares<F>(i, lobes_, apart_, wi_[i], light_), light);
+    }
+
+    // The way into a body and out of it is one event.
+    bool leaves_body(int i) const noexcept {
+        if constexpr (kMedia<F>) return inside_[i].leaves_body();
+        return false;
+    }
 
     void invalid(InvalidCause cause, int i) noexcept {
         counters_.add_invalid(cause, lane_x(job_, i), lane_y(job_, i), job_.index);
-    }
-
-    // Numbers that decide partial opacity for the rays of one step.
-    void ray_seeds(std::uint32_t step, std::uint32_t (&seeds)[kLanes]) const noexcept {
-        const std::uint32_t salt = hash_combine(job_.index, step);
-        for (int i = 0; i < kLanes; ++i) seeds[i] = hash_combine(job_.seeds[i], salt);
     }
 
     void finish() noexcept {
@@ -549,6 +554,7 @@ private:
     const RenderDesc& settings_;
     BlockSamples& out_;
     Counters& counters_;
+    PathPasses* const passes_;  // null: beauty alone
     LaneMask alive_ = 0, escaped_ = 0, shadow_lanes_ = 0;
     LaneMask passing_ = 0;  // lanes that go straight on, past a boundary that is none
     std::uint32_t seeds_[kLanes];

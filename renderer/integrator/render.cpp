@@ -3,12 +3,14 @@
 #include "renderer/api/render.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <mutex>
 
 #include "renderer/core/parallel.h"
 #include "renderer/film/film.h"
 #include "renderer/integrator/block.h"
+#include "renderer/integrator/path_passes.h"
 #include "renderer/integrator/tiles.h"
 
 namespace tessera {
@@ -20,26 +22,15 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-FilmLayers layers_of(const FilmDesc& film) {
-    FilmLayers layers;
-    if (film.aovs.empty()) return {true, true, true, true};
-    for (const std::string& name : film.aovs) {
-        if (!enable_layer(name, layers)) {
-            throw Error(ExitCode::usage, film.loc,
-                        "pass '" + name + "' is unknown (there are: beauty, Z, N, P, albedo)");
-        }
-    }
-    return layers;
-}
-
 class Renderer {
 public:
     Renderer(const Scene& scene, const RenderSettings& settings)
         : scene_(scene),
           settings_(settings),
           window_(window_of(scene.film())),
-          layers_(layers_of(scene.film())),
-          film_(window_, layers_),
+          film_(window_, scene.passes()),
+          times_(std::any_of(scene.passes().begin(), scene.passes().end(),
+                             [](const Pass& p) { return p.source == PassSource::seconds; })),
           filter_(scene.film().filter, scene.film().filter_width_px),
           kernel_(find_kernel(scene.settings().integrator, scene.kernel())),
           tiles_(make_tiles(window_, settings.tile)),
@@ -95,8 +86,10 @@ private:
         BlockJob job;
         job.scene = &scene_;
         job.filter = &filter_;
-        job.layers = layers_.any();
         BlockSamples samples;
+        PassSamples passes = film_.pass_samples();
+        PathPasses path_passes(scene_, passes);
+        if (!film_.passes().empty()) job.passes = &path_passes;
         for (int y = tile.y0 & ~(kBlockSize - 1); y < tile.y1; y += kBlockSize) {
             for (int x = tile.x0 & ~(kBlockSize - 1); x < tile.x1; x += kBlockSize) {
                 job.x = x, job.y = y;
@@ -104,16 +97,29 @@ private:
                 seed_block(job, scene_.settings().seed);
                 for (int index = first; index < last; ++index) {
                     job.index = static_cast<std::uint32_t>(index);
-                    kernel_(job, samples, counters);
+                    if (job.passes && times_)
+                        timed(job, samples, passes, counters);
+                    else
+                        kernel_(job, samples, counters);
                     for (int lane = 0; lane < kLanes; ++lane) {
                         if ((job.lanes >> lane) & 1u)
-                            film_.add(lane_x(job, lane), lane_y(job, lane), samples[lane]);
+                            film_.add(lane_x(job, lane), lane_y(job, lane), job.index,
+                                      samples[lane], job.passes ? &passes : nullptr, lane);
                     }
                 }
             }
         }
         const std::lock_guard lock(mutex_);
         counters_.add(counters);
+    }
+
+    // Every pixel of a block has an equal part of its time.
+    void timed(const BlockJob& job, BlockSamples& samples, PassSamples& passes,
+               Counters& counters) const {
+        const auto start = Clock::now();
+        kernel_(job, samples, counters);
+        const double each = seconds_since(start) / std::popcount(job.lanes);
+        for (float& s : passes.seconds) s = static_cast<float>(each);
     }
 
     void report(double samples, int spp, int pass_end) {
@@ -158,15 +164,15 @@ private:
             s.first_invalid = std::string(to_string(f.cause)) + " at pixel " + std::to_string(f.x) +
                               "," + std::to_string(f.y) + " sample " + std::to_string(f.sample);
         }
-        if (!layers_.any()) s.left_out.push_back({"passes", "only beauty was asked for"});
+        if (film_.passes().empty()) s.left_out.push_back({"passes", "only beauty was asked for"});
         return r;
     }
 
     const Scene& scene_;
     const RenderSettings& settings_;
     PixelWindow window_;
-    FilmLayers layers_;
     Film film_;
+    bool times_;  // a pass wants them
     FilterSampler filter_;
     BlockKernel kernel_;
     std::vector<PixelWindow> tiles_;

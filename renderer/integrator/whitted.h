@@ -11,6 +11,7 @@
 #include "renderer/core/robust.h"
 #include "renderer/core/sampler.h"
 #include "renderer/integrator/block.h"
+#include "renderer/integrator/path_passes.h"
 #include "renderer/integrator/ray_log.h"
 #include "renderer/integrator/shading.h"
 
@@ -63,6 +64,7 @@ private:
         sample_pairs(job_.seeds, job_.index, dim::kLens, lens);
         const Camera& camera = scene_.camera();
         camera.rays(film, lens, job_.x, packet_.ray);
+        if (job_.passes) job_.passes->start(job_.lanes);
         for (LaneMask m = job_.lanes; m != 0; m &= m - 1) {
             const int i = std::countr_zero(m);
             out_[i] = PathSample{};
@@ -91,7 +93,7 @@ private:
     }
 
     void intersect(std::uint32_t step) noexcept {
-        ray_seeds(2 * step);
+        ray_seeds(job_, 2 * step, seeds_);
         for (LaneMask m = alive_; m != 0; m &= m - 1) {
             const int i = std::countr_zero(m);
             packet_.ray.set(i, node_[i].ray);
@@ -117,7 +119,7 @@ private:
             !(length2(v.s.ng) > 0.5f))
             return invalid(InvalidCause::hit, i);
         node.cone_width += node.cone_spread * dot(v.s.p - node.ray.o, node.ray.d);
-        if (node.depth == 0) note_first_hit(i);
+        if (node.depth == 0) note_first_hit(i, hit);
         const ShaderProgram* program = v.s.material >= 0 ? &scene_.program(v.s.material) : nullptr;
         ShadeInput in = shade_input<F>(scene_, program, hit, node.cone_width, node.ray.d, v.s);
         if constexpr (F.textures) in.seed = seeds_[i];
@@ -138,7 +140,7 @@ private:
             coat_frame<F>(v.s, *program, in, scene_.textures(), v.frame.front, v.frame.shading,
                           v.frame.shading.to_local(v.frame.guard), v.frame.wo);
         push_lobes<F>(*program, in, scene_.textures(), view, i, lobes_);
-        if (node.depth == 0) out_[i].albedo = lobes_.albedo(i);
+        if (node.depth == 0 && job_.passes) job_.passes->first(i).albedo = lobes_.albedo(i);
         out_[i].radiance +=
             node.weight * lobes_.template weight<DiffuseLobe>(i) * scene_.lights().ambient();
         shade_ |= 1u << i;
@@ -167,7 +169,7 @@ private:
         }
         if (waiting == 0) return;
         counters_.rays.shadow += static_cast<std::uint64_t>(std::popcount(waiting));
-        ray_seeds(2 * step + 1);
+        ray_seeds(job_, 2 * step + 1, seeds_);
         if (job_.log) job_.log->packet(shadow_, waiting, seeds_, true);
         const LaneMask blocked = scene_.accel().occluded(shadow_, waiting, seeds_);
         for (LaneMask m = waiting & ~blocked; m != 0; m &= m - 1) {
@@ -229,14 +231,10 @@ private:
              InvalidCause::bounce_ray);
     }
 
-    void note_first_hit(int i) noexcept {
-        PathSample& o = out_[i];
-        const SurfacePoint& s = vertex_[i].s;
-        o.alpha = 1.0f;
-        o.hit = true;
-        o.z = scene_.camera().depth(s.p);
-        o.p = Vec3f(Vec3d(s.p) + scene_.origin());
-        o.n = dot(s.ns, node_[i].ray.d) <= 0.0f ? s.ns : -s.ns;
+    void note_first_hit(int i, const Hit& hit) noexcept {
+        out_[i].alpha = 1.0f;
+        if (PathPasses* const p = job_.passes)
+            note_geometry(scene_, hit, node_[i].ray.d, p->wants_uv(), vertex_[i].s, p->first(i));
     }
 
     void finish(int i) noexcept {
@@ -249,10 +247,6 @@ private:
 
     void invalid(InvalidCause cause, int i) noexcept {
         counters_.add_invalid(cause, lane_x(job_, i), lane_y(job_, i), job_.index);
-    }
-    void ray_seeds(std::uint32_t step) noexcept {
-        const std::uint32_t salt = hash_combine(job_.index, step);
-        for (int i = 0; i < kLanes; ++i) seeds_[i] = hash_combine(job_.seeds[i], salt);
     }
 
     const BlockJob& job_;

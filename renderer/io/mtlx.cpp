@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "renderer/core/nearest_name.h"
 #include "renderer/io/mtlx_surface.h"
-#include "renderer/io/nearest_name.h"
 
 namespace tessera {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "renderer/io/nearest_name.h"
+#include "renderer/core/nearest_name.h"
 
 namespace tessera {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "renderer/core/nearest_name.h"
 #include "renderer/io/mtlx_graph.h"
-#include "renderer/io/nearest_name.h"
 #include "renderer/io/scene_textures.h"
 
 namespace tessera {

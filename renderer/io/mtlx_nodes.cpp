@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 
+#include "renderer/core/nearest_name.h"
 #include "renderer/io/mtlx_graph.h"
 #include "renderer/io/mtlx_rewrites.h"
-#include "renderer/io/nearest_name.h"
 
 namespace tessera {
 namespace {

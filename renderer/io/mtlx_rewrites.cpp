@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "renderer/io/nearest_name.h"
+#include "renderer/core/nearest_name.h"
 
 namespace tessera {
 namespace {

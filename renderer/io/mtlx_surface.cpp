@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <type_traits>
 
-#include "renderer/io/nearest_name.h"
+#include "renderer/core/nearest_name.h"
 #include "renderer/io/scene_layers.h"
 
 namespace tessera {

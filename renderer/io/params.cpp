@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "renderer/io/nearest_name.h"
+#include "renderer/core/nearest_name.h"
 
 namespace tessera {
 namespace {

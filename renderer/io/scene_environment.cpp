@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "renderer/io/light_group_key.h"
 #include "renderer/io/params.h"
 #include "renderer/io/texture_files.h"
 
@@ -42,6 +43,7 @@ const KeySet<EnvironmentDesc>& environment_part() {
              key("color_space", &E::color_space,
                  "Colour space of the image; absent: the working space."),
              key("visible", &E::visible, "Seen by camera rays."),
+             light_group_key(&E::light_group),
          }}};
     return keys;
 }
@@ -82,6 +84,7 @@ const KeySet<SkyDesc>& sky_part() {
              key("intensity", &S::intensity, "Factor on sky and sun.", kAtLeast0),
              key("sun", &S::sun, "With the sun's disc, as a distant light."),
              key("visible", &S::visible, "Seen by camera rays."),
+             light_group_key(&S::light_group),
          }}};
     return keys;
 }

@@ -1,7 +1,7 @@
 #include "renderer/io/scene_layers.h"
 
 #include "renderer/api/openpbr_inputs.h"
-#include "renderer/io/nearest_name.h"
+#include "renderer/core/nearest_name.h"
 #include "renderer/io/params.h"
 
 namespace tessera {

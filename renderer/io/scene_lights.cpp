@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "renderer/io/light_group_key.h"
 #include "renderer/io/scene_reader.h"
 
 namespace tessera {
@@ -10,6 +11,7 @@ struct LightEntry {
     std::string name;
     std::string type;
     bool visible = true;
+    std::string light_group;
     Shape shape;
 };
 
@@ -73,6 +75,7 @@ KeySet<LightEntry<Shape>> rows_of_type(const std::string& type) {
     add_part(rows, KeySet<Shape>{{type, rows_of(Shape{})}}, &E::shape);
     rows.list.keys.push_back(
         key("visible", &E::visible, "Seen by camera rays; lights with an area only."));
+    rows.list.keys.push_back(light_group_key(&E::light_group));
     return rows;
 }
 
@@ -125,7 +128,7 @@ LightDesc read_light(const Value& table, const ReadContext& at) {
         at.problems.error(written ? written->loc : table.loc,
                           at.subject + ": " + key + " " + message);
     });
-    return {entry.name, table.loc, entry.visible, entry.shape};
+    return {entry.name, table.loc, entry.visible, entry.light_group, entry.shape};
 }
 
 template <class Shape, const char* name>

@@ -2,7 +2,8 @@
 #include <array>
 
 #include "renderer/api/openpbr_inputs.h"
-#include "renderer/io/nearest_name.h"
+#include "renderer/core/nearest_name.h"
+#include "renderer/io/light_group_key.h"
 #include "renderer/io/presets.h"
 #include "renderer/io/scene_environment.h"
 #include "renderer/io/scene_layers.h"
@@ -203,6 +204,7 @@ std::vector<Key> supported_rows() {
                              {.low = -1000, .high = 1000}));
     rows.push_back(plain_row("use_vertex_color", &M::use_vertex_color,
                              "base_color is multiplied by the mesh's colours."));
+    rows.push_back(of_target(light_group_key(&MaterialDesc::light_group)));
     rows.push_back(reflection_map_row());
     return rows;
 }

@@ -3,7 +3,7 @@
 #include <charconv>
 #include <memory>
 
-#include "renderer/io/nearest_name.h"
+#include "renderer/core/nearest_name.h"
 #include "renderer/io/scene_document.h"
 #include "renderer/io/scene_parse.h"
 

@@ -63,9 +63,12 @@ const KeySet<FilmDesc>& film_part() {
                  word("working_space", &F::working_space, {"lin_rec709", "acescg"},
                       "The linear colour space of every colour in the scene and of the picture."),
                  key("aovs", &F::aovs,
-                     "Layers beside beauty; none named: all; 'beauty' alone: no other."),
+                     "Layers beside beauty: passes, presets, 'light_groups', 'PASS@groups', "
+                     "'NAME = LIGHT PATH EXPRESSION'; none named: Z, N, P and albedo; 'beauty' "
+                     "alone: no other."),
+                 key("ao_distance", &F::ao_distance,
+                     "How far ambient occlusion looks, scene units; 0: without end.", kAtLeast0),
              }}};
-        rows.list.keys.back().form.choices = {"beauty", "Z", "N", "P", "albedo"};
         return rows;
     }();
     return keys;

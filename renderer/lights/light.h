@@ -43,6 +43,7 @@ struct LightSamples {
     std::int32_t material[kLanes];
     std::uint32_t placement[kLanes];
     Lanes<Vec2f> uv;
+    std::int32_t light[kLanes];  // which one; set by LightSet
 
     void set(int lane, const LightSample& s);
 };

@@ -61,8 +61,10 @@ Color mean_radiance(const LatLongMap& e) {
 
 }  // namespace
 
-LightSet::LightSet(std::vector<Light> lights, const std::vector<double>& powers)
-    : lights_(std::move(lights)) {
+LightSet::LightSet(std::vector<Light> lights, const std::vector<double>& powers,
+                   std::vector<LightLabel> labels)
+    : lights_(std::move(lights)), labels_(std::move(labels)) {
+    labels_.resize(lights_.size());
     double sum = 0;
     int alive = 0;
     for (double p : powers) sum += p, alive += p > 0;
@@ -133,6 +135,7 @@ LaneMask LightSet::sample(LaneMask lanes, const LightReference (&refs)[kLanes],
     for (LaneMask m = made; m != 0; m &= m - 1) {
         const int i = std::countr_zero(m);
         out.pdf[i] *= picks[i].probability;
+        out.light[i] = static_cast<std::int32_t>(picks[i].index);
     }
     return made;
 }
@@ -144,8 +147,8 @@ float LightSet::pdf(int index, const LightReference& ref, Vec3f wi, Vec3f p, Vec
 }
 
 void LightSet::escaped(LaneMask lanes, LaneMask specular, const Vec3Lanes& d,
-                       const float (&bsdf_pdf)[kLanes], bool camera,
-                       Color (&out)[kLanes]) const noexcept {
+                       const float (&bsdf_pdf)[kLanes], bool camera, Color (&out)[kLanes],
+                       EscapeSink* sink) const noexcept {
     for (LaneMask m = lanes; m != 0; m &= m - 1) out[std::countr_zero(m)] = Color(0.0f);
     EnvironmentLight::Look seen[kLanes];
     for (int light : infinite_) {
@@ -170,6 +173,7 @@ void LightSet::escaped(LaneMask lanes, LaneMask specular, const Vec3Lanes& d,
             const float weight =
                 bsdf_pdf[i] > 0.0f ? mis_power(bsdf_pdf[i], choice * seen[i].pdf) : 1.0f;
             out[i] += seen[i].radiance * weight;
+            if (sink) sink->see(light, i, seen[i].radiance * weight);
         }
     }
 }

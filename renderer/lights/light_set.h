@@ -4,15 +4,33 @@
 #include <cstdint>
 #include <vector>
 
+#include "renderer/core/light_event.h"
 #include "renderer/lights/light.h"
 
 namespace tessera {
+
+/// What a light is to light path expressions. The faces of a mesh light are labelled by their
+/// materials.
+struct LightLabel {
+    LightType type = LightType::light;
+    int tag = 0;
+};
+
+/// Takes what rays that hit nothing see of each light.
+class EscapeSink {
+public:
+    virtual void see(int light, int lane, Color radiance) = 0;
+
+protected:
+    ~EscapeSink() = default;
+};
 
 class LightSet {
 public:
     LightSet() = default;
     /// powers: estimates in watts (any common unit); lights of power 0 are never chosen.
-    LightSet(std::vector<Light> lights, const std::vector<double>& powers);
+    LightSet(std::vector<Light> lights, const std::vector<double>& powers,
+             std::vector<LightLabel> labels = {});
 
     bool empty() const noexcept { return lights_.empty(); }
     /// Whether sample() can find anything: false if all light is a constant sky or there is none.
@@ -21,6 +39,7 @@ public:
     bool hittable() const noexcept { return hittable_; }
     int size() const noexcept { return static_cast<int>(lights_.size()); }
     const Light& operator[](int i) const noexcept { return lights_[i]; }
+    LightLabel label(int i) const noexcept { return labels_[i]; }
 
     /// For each lane chooses a light by u_choice and samples it; out.pdf includes the choice.
     /// Returns the lanes that found light.
@@ -34,9 +53,10 @@ public:
     /// Light from infinity along d, for rays that hit nothing. bsdf_pdf: density that made the ray,
     /// 0 if light sampling could not have made it (camera, delta): the result is weighted by the
     /// power heuristic. camera: all are camera rays; specular: lanes whose ray a specular lobe
-    /// sent.
+    /// sent. sink: is told of each light, or null.
     void escaped(LaneMask lanes, LaneMask specular, const Vec3Lanes& d,
-                 const float (&bsdf_pdf)[kLanes], bool camera, Color (&out)[kLanes]) const noexcept;
+                 const float (&bsdf_pdf)[kLanes], bool camera, Color (&out)[kLanes],
+                 EscapeSink* sink) const noexcept;
     /// Whether specular lobes see surroundings of their own, and what they see of them along d.
     bool own_reflection() const noexcept { return own_reflection_ >= 0; }
     Color reflection(Vec3f d) const noexcept;
@@ -53,6 +73,7 @@ private:
 
     std::vector<Light> lights_;
     std::vector<std::uint8_t> kinds_;  // indices of the variants
+    std::vector<LightLabel> labels_;
     AliasTable choice_;
     int sampled_ = 0;  // lights of positive power
     bool hittable_ = false;

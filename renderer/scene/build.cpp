@@ -38,6 +38,7 @@ public:
         instances_ = flatten(desc_, problems_);
         find_used_materials();
         compile_materials();
+        choose_passes();
         place_origin();
         if (any_subdivided(desc_, instances_)) subdivide();
         place_shapes();
@@ -124,6 +125,25 @@ private:
         if (missing(m.bump.texture)) m.bump = {0};
         if (missing(m.displacement.texture)) m.displacement = {0};
         if (missing(m.vector_displacement.texture)) m.vector_displacement = {};
+    }
+
+    // Names of all lights first: passes may be of groups of them.
+    void choose_passes() {
+        LightTags& tags = scene_->light_tags_;
+        for (std::size_t i = 0; i < used_.size(); ++i) {
+            const MaterialDesc& m = desc_.materials[i];
+            if (used_[i] && scene_->programs_[i].facts().emissive)
+                tags.tag_material(static_cast<int>(i), m.light_group, m.name);
+        }
+        for (const LightDesc& light : desc_.lights) tags.add(light.light_group, light.name);
+        if (desc_.environment) tags.add(desc_.environment->light_group, "environment");
+        if (desc_.sky) tags.add(desc_.sky->light_group, "sky");
+        scene_->passes_ = tessera::choose_passes(desc_.film.aovs, tags.groups(), desc_.film.loc);
+        if (needs_path(scene_->passes_) && desc_.render.integrator != Integrator::path)
+            throw Error(ExitCode::usage, desc_.film.loc,
+                        "film.aovs: passes of light, shadow and lobes need render.integrator = "
+                        "'path'");
+        scene_->light_paths_ = LightPaths(scene_->passes_, tags.tags(), desc_.film.loc);
     }
 
     // By the camera that frames what is there before: what it frames in the end is not known yet.
@@ -292,7 +312,9 @@ private:
         BakeNeeds needs;
         needs.cutout = [&](int m) { return facts(m).cutout; };
         needs.any_cutout_override = use.cutout_override;
-        needs.uvs = needs.colors = false;
+        needs.uvs = std::any_of(scene_->passes_.begin(), scene_->passes_.end(),
+                                [](const Pass& p) { return p.source == PassSource::uv; });
+        needs.colors = false;
         for (std::size_t m = 0; m < scene_->programs_.size(); ++m) {
             // Any used material may stand on it through an override; finer bookkeeping would save
             // little.
@@ -327,6 +349,7 @@ private:
                         scene_->programs_,
                         scene_->textures_.get(),
                         nullptr,
+                        scene_->light_tags_,
                         problems_};
         if (desc_.sky || has_environment_image()) in.colors = &colors();
         read_reflection_maps();

@@ -23,6 +23,7 @@ struct EmitterBuilder {
     Geometry& geometry;
     std::vector<Light> lights;
     std::vector<double> powers;
+    std::vector<LightLabel> labels;
     // By shape and replacing material.
     std::map<std::pair<std::uint32_t, std::int32_t>, std::shared_ptr<EmissiveFaces>> shared;
 
@@ -30,7 +31,8 @@ struct EmitterBuilder {
     Vec3f point(const Double3& p) const { return Vec3f(Vec3d(p) - in.origin); }
     int next() const { return static_cast<int>(lights.size()); }
 
-    void add(Light light, double mesh_emission = 0) {
+    void add(Light light, LightLabel label, double mesh_emission = 0) {
+        labels.push_back(label);
         powers.push_back(light_power(light, radius(), mesh_emission));
         lights.push_back(std::move(light));
     }
@@ -44,27 +46,36 @@ struct EmitterBuilder {
         geometry.placements.push_back(placed);
     }
 
+    LightLabel lamp(const LightDesc& desc) const {
+        return {LightType::light, in.tags.add(desc.light_group, desc.name)};
+    }
+    // What shines by its material; of the faces of a mesh each is asked for its own.
+    LightLabel surface(std::int32_t material) const {
+        return {LightType::object, in.tags.of_material(material)};
+    }
+
     void described(const LightDesc& desc) {
         std::visit([&](const auto& l) { make(l, desc); }, desc.shape);
     }
 
-    void make(const PointLightDesc& l, const LightDesc&) {
-        add(PointLight{point(l.position), color_of(l.intensity)});
+    void make(const PointLightDesc& l, const LightDesc& desc) {
+        add(PointLight{point(l.position), color_of(l.intensity)}, lamp(desc));
     }
 
-    void make(const SpotLightDesc& l, const LightDesc&) {
+    void make(const SpotLightDesc& l, const LightDesc& desc) {
         SpotLight s;
         s.position = point(l.position);
         s.direction = Vec3f(normalize(Vec3d(l.direction)));
         s.intensity = color_of(l.intensity);
         s.cos_outer = static_cast<float>(std::cos(l.cone_deg * kPiD / 180));
         s.cos_inner = static_cast<float>(std::cos(l.cone_deg * (1 - l.blend) * kPiD / 180));
-        add(s);
+        add(s, lamp(desc));
     }
 
     void make(const DistantLightDesc& l, const LightDesc& desc) {
         add(make_distant_light(Vec3f(-normalize(Vec3d(l.direction))), color_of(l.irradiance),
-                               l.angle_deg, desc.visible));
+                               l.angle_deg, desc.visible),
+            lamp(desc));
     }
 
     void make(const QuadLightDesc& l, const LightDesc& desc) {
@@ -89,7 +100,7 @@ struct EmitterBuilder {
         body.materials = {-1};
         place_body(PlacedKind::mesh, geometry.meshes.size(), desc.visible);
         geometry.meshes.push_back(std::move(body));
-        add(q);
+        add(q, lamp(desc));
     }
 
     void make(const DiscLightDesc& l, const LightDesc& desc) {
@@ -97,14 +108,14 @@ struct EmitterBuilder {
                           static_cast<float>(l.radius), color_of(l.radiance), l.two_sided};
         place_body(PlacedKind::disc, geometry.discs.size(), desc.visible);
         geometry.discs.push_back({d.center, d.normal, d.radius, -1});
-        add(d);
+        add(d, lamp(desc));
     }
 
     void make(const SphereLightDesc& l, const LightDesc& desc) {
         const SphereLight s{point(l.center), static_cast<float>(l.radius), color_of(l.radiance)};
         place_body(PlacedKind::sphere, geometry.spheres.size(), desc.visible);
         geometry.spheres.push_back({s.center, s.radius, -1});
-        add(s);
+        add(s, lamp(desc));
     }
 
     // Emissive materials on shapes.
@@ -137,10 +148,10 @@ struct EmitterBuilder {
         placed.light = next();
         if (placed.kind == PlacedKind::sphere) {
             const Sphere& s = geometry.spheres[placed.shape];
-            add(SphereLight{s.center, s.radius, radiance});
+            add(SphereLight{s.center, s.radius, radiance}, surface(material));
         } else {
             const Disc& d = geometry.discs[placed.shape];
-            add(DiscLight{d.center, d.normal, d.radius, radiance, true});
+            add(DiscLight{d.center, d.normal, d.radius, radiance, true}, surface(material));
         }
     }
 
@@ -174,7 +185,7 @@ struct EmitterBuilder {
         light.placement = static_cast<std::uint32_t>(&placed - geometry.placements.data());
         placed.light = next();
         const double emission = emission_of(light);
-        add(std::move(light), emission);
+        add(std::move(light), {LightType::object, 0}, emission);
     }
 
     double brightness(std::int32_t material) const {
@@ -255,14 +266,19 @@ struct EmitterBuilder {
 }  // namespace
 
 LightSet make_emitters(const EmitterInput& in, Geometry& geometry) {
-    EmitterBuilder b{in, geometry, {}, {}, {}};
+    EmitterBuilder b{in, geometry, {}, {}, {}, {}};
+    const auto around = [&](const std::string& group, const char* name) {
+        return LightLabel{LightType::surroundings, in.tags.add(group, name)};
+    };
     b.surfaces(geometry.placements.size());
     for (const LightDesc& light : in.desc.lights) b.described(light);
     if (in.desc.environment)
-        if (auto light = make_environment(*in.desc.environment, in)) b.add(std::move(*light));
+        if (auto light = make_environment(*in.desc.environment, in))
+            b.add(std::move(*light), around(in.desc.environment->light_group, "environment"));
     if (in.desc.sky)
-        for (Light& light : make_sky(*in.desc.sky, in)) b.add(std::move(light));
-    return LightSet(std::move(b.lights), b.powers);
+        for (Light& light : make_sky(*in.desc.sky, in))
+            b.add(std::move(light), around(in.desc.sky->light_group, "sky"));
+    return LightSet(std::move(b.lights), b.powers, std::move(b.labels));
 }
 
 }  // namespace tessera

@@ -8,6 +8,7 @@
 #include "renderer/geometry/shapes.h"
 #include "renderer/image/colour_space.h"
 #include "renderer/lights/light_set.h"
+#include "renderer/scene/light_tags.h"
 
 namespace tessera {
 
@@ -17,6 +18,7 @@ struct EmitterInput {
     std::span<const ShaderProgram> programs;
     const TextureStore* textures;
     const ColorSpaces* colors;  // only for an environment image
+    LightTags& tags;
     Problems& problems;
 };
 

@@ -65,7 +65,7 @@ public:
         visit_inputs([&](auto member, const OpenPbrInput&) { (*this)(m.*member); });
         all(m.displacement_scale, m.displacement_offset, m.displacement_space);
         all(m.geometry_thin_walled, m.geometry_normal, m.geometry_coat_normal, m.geometry_tangent,
-            m.geometry_coat_tangent, m.bump_in_uv, m.nodes, m.dielectric_priority,
+            m.geometry_coat_tangent, m.bump_in_uv, m.nodes, m.dielectric_priority, m.light_group,
             m.use_vertex_color, m.reflection_map);
     }
     void operator()(const ReflectionMapDesc& r) {
@@ -94,26 +94,26 @@ public:
     }
     void operator()(const SphereLightDesc& l) { all(l.center, l.radius, l.radiance); }
     void operator()(const LightDesc& l) {
-        all(l.name, l.visible, l.shape.index());
+        all(l.name, l.visible, l.light_group, l.shape.index());
         std::visit([&](const auto& s) { (*this)(s); }, l.shape);
     }
     void operator()(const EnvironmentDesc& e) {
         all(e.file, e.faces, e.camera, e.lighting, e.reflection, e.projection, e.color_space,
-            e.radiance, e.rotate_deg, e.visible);
+            e.radiance, e.rotate_deg, e.visible, e.light_group);
     }
     void operator()(const SkyDesc::PlaceAndTime& t) {
         all(t.latitude_deg, t.longitude_deg, t.year, t.month, t.day, t.hour);
     }
     void operator()(const SkyDesc& s) {
         all(s.turbidity, s.ground_albedo, s.sun_elevation_deg, s.sun_azimuth_deg, s.when,
-            s.sun_angle_deg, s.intensity, s.sun, s.visible);
+            s.sun_angle_deg, s.intensity, s.sun, s.visible, s.light_group);
     }
     void operator()(const CameraDesc& c) {
         all(c.automatic, c.projection, c.position, c.look_at, c.up, c.matrix, c.fov_deg, c.fov_axis,
             c.ortho_height, c.aperture_radius, c.focus_distance);
     }
     void operator()(const FilmDesc& f) {
-        all(f.width, f.height, f.filter, f.filter_width_px, f.working_space);
+        all(f.width, f.height, f.filter, f.filter_width_px, f.working_space, f.ao_distance);
     }
     void operator()(const RenderDesc& r) {
         all(r.integrator, r.seed, r.max_depth, r.max_diffuse_depth, r.max_glossy_depth,

@@ -7,6 +7,7 @@
 
 #include "materials/program.h"
 #include "renderer/api/render.h"
+#include "renderer/film/light_paths.h"
 #include "renderer/geometry/accel.h"
 #include "renderer/geometry/interpolate.h"
 #include "renderer/image/colour_space.h"
@@ -14,6 +15,7 @@
 #include "renderer/lights/reflection_map.h"
 #include "renderer/scene/camera.h"
 #include "renderer/scene/features.h"
+#include "renderer/scene/light_tags.h"
 
 namespace tessera {
 
@@ -28,6 +30,12 @@ public:
     const ReflectionMap* reflection_map(int material) const noexcept {
         return reflection_maps_.empty() ? nullptr : reflection_maps_[material].get();
     }
+    /// What lights are called in light path expressions, and the groups that there are, "default"
+    /// first.
+    const LightTags& light_tags() const noexcept { return light_tags_; }
+    /// What is asked for beyond beauty, and the expressions of it compiled.
+    const Passes& passes() const noexcept { return passes_; }
+    const LightPaths& light_paths() const noexcept { return light_paths_; }
     const TextureStore* textures() const noexcept { return textures_.get(); }
     /// Whether a ray can run into something that shines.
     bool emission_can_be_hit() const noexcept { return emission_can_be_hit_; }
@@ -51,6 +59,9 @@ private:
     std::vector<std::shared_ptr<const ReflectionMap>> reflection_maps_;  // by material, or none
     std::unique_ptr<ColorSpaces> colors_;
     std::unique_ptr<TextureStore> textures_;
+    LightTags light_tags_;
+    Passes passes_;
+    LightPaths light_paths_;
     LightSet lights_;
     bool emission_can_be_hit_ = false;
     Camera camera_;

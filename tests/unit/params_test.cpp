@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "renderer/io/nearest_name.h"
+#include "renderer/core/nearest_name.h"
 #include "renderer/io/scene_parse.h"
 
 using namespace tessera;

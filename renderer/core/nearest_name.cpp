@@ -1,4 +1,4 @@
-#include "renderer/io/nearest_name.h"
+#include "renderer/core/nearest_name.h"
 
 #include <algorithm>
 #include <cctype>
