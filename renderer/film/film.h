@@ -43,7 +43,9 @@ public:
     /// index order.
     void add(int x, int y, const PathSample& s) noexcept;
     /// Means of what was added.
-    std::vector<Layer> layers() const;
+    std::vector<Layer> layers() const { return layers(window_); }
+    /// The same of a part of the window; other threads may add outside it.
+    std::vector<Layer> layers(const PixelWindow& part) const;
     std::size_t bytes() const noexcept;
 
 private:
