@@ -109,6 +109,8 @@ struct RenderSettings {
     double time_s = 0;  // > 0: passes until so many seconds are used; spp is then the upper bound
     const std::atomic<bool>* cancel = nullptr;
     std::function<void(const Progress&)> progress;  // called from one thread at a time
+    /// A tile of a pass is finished: its pixels so far, to be copied. Called by several at a time.
+    std::function<void(const PixelWindow&, const std::vector<Layer>&)> on_tile;
 };
 
 struct RenderResult {

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "renderer/cli/console.h"
+#include "renderer/core/log.h"
 
 namespace tessera {
 namespace {
@@ -40,6 +41,7 @@ ProgressPrinter::ProgressPrinter(bool enabled) : enabled_(enabled), terminal_(ca
 
 void ProgressPrinter::show(const Progress& p) {
     if (!enabled_) return;
+    const std::lock_guard lock(mutex_);
     const bool end = p.fraction >= 1.0;
     if (terminal_) {
         if (!end && p.elapsed_s - last_time_ < kBarSeconds) return;
@@ -71,9 +73,20 @@ void ProgressPrinter::line(const Progress& p) {
                           p.fraction * 100, p.spp, p.elapsed_s, p.eta_s, peak_memory() >> 20));
 }
 
-void ProgressPrinter::finish() {
+void ProgressPrinter::end_bar() {
     if (open_) print_err("\n");
     open_ = false;
+}
+
+void ProgressPrinter::finish() {
+    const std::lock_guard lock(mutex_);
+    end_bar();
+}
+
+void ProgressPrinter::warn(const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    end_bar();
+    log_warning(text);
 }
 
 std::uint64_t peak_memory() {

@@ -16,6 +16,7 @@
 #include "renderer/cli/progress.h"
 #include "renderer/cli/scene_options.h"
 #include "renderer/cli/signals.h"
+#include "renderer/cli/tev_display.h"
 #include "renderer/core/log.h"
 #include "renderer/image/atomic_file.h"
 #include "renderer/image/colour_space.h"
@@ -26,7 +27,7 @@ namespace {
 
 struct RenderOptions {
     SceneOptions scene;
-    std::string output, preview, view, stats;
+    std::string output, preview, view, stats, display;
     double time_s = 0;
     bool all_float = false, no_progress = false, quiet = false;
     int verbose = 0;
@@ -120,16 +121,34 @@ void warn_of_lost_values(const Statistics& s) {
     }
 }
 
-RenderResult render_with_progress(const Scene& scene, const RenderOptions& o) {
-    ProgressPrinter printer(!o.no_progress && !o.quiet);
+// Empty when no --display is given.
+std::unique_ptr<TevDisplay> open_display(const FilmDesc& film, const RenderOptions& o,
+                                         ProgressPrinter& printer) {
+    if (o.display.empty()) return nullptr;
+    TevPicture picture{o.output, film.width, film.height, {0, 0, film.width, film.height}};
+    if (film.crop) picture.window = *film.crop;
+    return std::make_unique<TevDisplay>(parse_viewer_address(o.display), picture,
+                                        [&printer, quiet = o.quiet](const std::string& text) {
+                                            if (!quiet) printer.warn(text);
+                                        });
+}
+
+RenderResult render_with_progress(const Scene& scene, const RenderOptions& o,
+                                  ProgressPrinter& printer, TevDisplay* display) {
     RenderSettings settings;
     settings.threads = o.scene.threads;
     settings.tile = o.scene.tile;
     settings.time_s = o.time_s;
     settings.cancel = &stop_at_next_tile();
     settings.progress = [&](const Progress& p) { printer.show(p); };
+    if (display) {
+        settings.on_tile = [=](const PixelWindow& tile, const std::vector<Layer>& layers) {
+            display->show(tile, layers);
+        };
+    }
     RenderResult result = render(scene, settings);
     printer.finish();
+    if (display) display->show(result.image.window, result.image.layers);
     return result;
 }
 
@@ -141,6 +160,7 @@ int run_render(RenderOptions options, const std::string& command) {
         log_info("note: no -o given, the picture goes to " + options.output);
     }
     catch_signals();
+    if (!options.display.empty()) parse_viewer_address(options.display);
     check_outputs(outputs_of(options));
 
     double load_s = 0;
@@ -150,7 +170,9 @@ int run_render(RenderOptions options, const std::string& command) {
     const ScenePtr scene = build_scene(std::move(desc), options.scene.build_options());
     say_what_was_built(describe(*scene), load_s, options.quiet);
 
-    RenderResult result = render_with_progress(*scene, options);
+    ProgressPrinter printer(!options.no_progress && !options.quiet);
+    const auto display = open_display(scene->film(), options, printer);
+    RenderResult result = render_with_progress(*scene, options, printer, display.get());
     Statistics& s = result.stats;
     s.load_s = load_s;
     if (!result.complete && s.samples == 0) {
@@ -172,6 +194,7 @@ int run_render(RenderOptions options, const std::string& command) {
     log_info(fmt::format("wrote    {} ({:.1f} MiB, {:.2f} s), peak memory {} MiB{}", options.output,
                          static_cast<double>(written.bytes) / (1 << 20), s.write_s,
                          s.memory_peak >> 20, result.complete ? "" : ", partial"));
+    if (display) display->close();
     return static_cast<int>(result.complete ? ExitCode::done : ExitCode::checkpoint);
 }
 
@@ -199,6 +222,9 @@ void add_render(CLI::App& app, CommandLine& line) {
     sub->add_option("--time", o->time_s,
                     "Seconds to render; passes until they are used, --spp at most")
         ->check(positive_seconds);
+    sub->add_option("--display", o->display,
+                    "HOST:PORT of a tev viewer that shows the picture as it grows")
+        ->check(named);
     sub->add_flag("--float", o->all_float, "All channels as 32-bit float");
     sub->add_flag("--no-progress", o->no_progress, "No progress on stderr");
     sub->add_flag("-v,--verbose", o->verbose, "Say more");

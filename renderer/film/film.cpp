@@ -209,75 +209,77 @@ void Film::merge(const Film& other) {
     }
 }
 
-std::vector<Layer> Film::layers() const {
-    const std::size_t n = beauty_.size();
+std::vector<Layer> Film::layers(const PixelWindow& part) const {
+    std::vector<std::size_t> pixels;
+    for (int y = part.y0; y < part.y1; ++y) {
+        for (int x = part.x0; x < part.x1; ++x) pixels.push_back(pixel(x, y));
+    }
     std::vector<Layer> out;
-    Layer beauty{"", {"R", "G", "B", "A"}, LayerKind::color, std::vector<float>(n * 4)};
-    for (std::size_t i = 0; i < n; ++i) {
-        const Beauty& b = beauty_[i];
+    Layer beauty{"", {"R", "G", "B", "A"}, LayerKind::color, std::vector<float>(pixels.size() * 4)};
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        const Beauty& b = beauty_[pixels[i]];
         const double w = b.samples > 0 ? 1.0 / b.samples : 0.0;
         for (std::size_t c = 0; c < 3; ++c)
             beauty.pixels[i * 4 + c] = static_cast<float>(b.rgb[c].value() * w);
         beauty.pixels[i * 4 + 3] = static_cast<float>(b.hits * w);
     }
     out.push_back(std::move(beauty));
-    for (std::size_t p = 0; p < passes_.size(); ++p)
-        out.push_back(layer_of(passes_[p], planes_[p]));
+    for (std::size_t p = 0; p < passes_.size(); ++p) {
+        const std::size_t channels = passes_[p].channels.size();
+        Layer layer{passes_[p].name, passes_[p].channels, passes_[p].kind,
+                    std::vector<float>(pixels.size() * channels)};
+        for (std::size_t i = 0; i < pixels.size(); ++i)
+            put_pixel(passes_[p], planes_[p], pixels[i], &layer.pixels[i * channels]);
+        out.push_back(std::move(layer));
+    }
     return out;
 }
 
-Layer Film::layer_of(const Pass& pass, const Plane& plane) const {
-    const std::size_t n = beauty_.size(), channels = pass.channels.size();
-    Layer layer{pass.name, pass.channels, pass.kind, std::vector<float>(n * channels)};
-    for (std::size_t i = 0; i < n; ++i) {
-        const Beauty& b = beauty_[i];
-        const double each = b.samples > 0 ? 1.0 / b.samples : 0.0;
-        float* const out = &layer.pixels[i * channels];
-        const Sum* const sums = plane.sums.data() + i * sums_of(pass);
-        switch (pass.source) {
-            case PassSource::z:
-                *out = std::min(nearest_[i].z, kEmptyDepth);
-                break;
-            case PassSource::sample_count:
-                *out = static_cast<float>(b.samples);
-                break;
-            case PassSource::seconds:
-                *out = static_cast<float>(sums->value());
-                break;
-            case PassSource::shadow_matte: {
-                const double all = sums[1].value();
-                *out = all > 0 ? static_cast<float>(sums[0].value() / all) : 0.0f;
-                break;
-            }
-            case PassSource::variance:
-                for (std::size_t c = 0; c < channels; ++c) {
-                    const double sum = b.rgb[c].value(), count = b.samples;
-                    const double v =
-                        count > 1 ? (sums[c].value() - sum * sum * each) / (count * (count - 1))
-                                  : 0.0;
-                    out[c] = static_cast<float>(std::max(v, 0.0));
-                }
-                break;
-            default: {
-                if (!plane.nearest.empty()) {
-                    std::copy_n(&plane.nearest[i * channels], channels, out);
-                    break;
-                }
-                // Colour is premultiplied by coverage as beauty is; data is the mean over what was
-                // hit.
-                const double hit = b.hits > 0 ? 1.0 / b.hits : 0.0;
-                const double w = pass.kind == LayerKind::color ? each : hit;
-                const bool albedo =
-                    pass.source == PassSource::albedo || pass.source == PassSource::event_albedo;
-                for (std::size_t c = 0; c < channels; ++c) {
-                    out[c] = static_cast<float>(sums[c].value() * w);
-                    // A colour of at most 1; single samples of it may be more.
-                    if (albedo) out[c] = std::min(out[c], 1.0f);
-                }
-            }
+void Film::put_pixel(const Pass& pass, const Plane& plane, std::size_t i, float* out) const {
+    const std::size_t channels = pass.channels.size();
+    const Beauty& b = beauty_[i];
+    const double each = b.samples > 0 ? 1.0 / b.samples : 0.0;
+    const Sum* const sums = plane.sums.data() + i * sums_of(pass);
+    switch (pass.source) {
+        case PassSource::z:
+            *out = std::min(nearest_[i].z, kEmptyDepth);
+            return;
+        case PassSource::sample_count:
+            *out = static_cast<float>(b.samples);
+            return;
+        case PassSource::seconds:
+            *out = static_cast<float>(sums->value());
+            return;
+        case PassSource::shadow_matte: {
+            const double all = sums[1].value();
+            *out = all > 0 ? static_cast<float>(sums[0].value() / all) : 0.0f;
+            return;
         }
+        case PassSource::variance:
+            for (std::size_t c = 0; c < channels; ++c) {
+                const double sum = b.rgb[c].value(), count = b.samples;
+                const double v =
+                    count > 1 ? (sums[c].value() - sum * sum * each) / (count * (count - 1)) : 0.0;
+                out[c] = static_cast<float>(std::max(v, 0.0));
+            }
+            return;
+        default:
+            break;
     }
-    return layer;
+    if (!plane.nearest.empty()) {
+        std::copy_n(&plane.nearest[i * channels], channels, out);
+        return;
+    }
+    // Colour is premultiplied by coverage as beauty is; data is the mean over what was hit.
+    const double hit = b.hits > 0 ? 1.0 / b.hits : 0.0;
+    const double w = pass.kind == LayerKind::color ? each : hit;
+    const bool albedo =
+        pass.source == PassSource::albedo || pass.source == PassSource::event_albedo;
+    for (std::size_t c = 0; c < channels; ++c) {
+        out[c] = static_cast<float>(sums[c].value() * w);
+        // A colour of at most 1; single samples of it may be more.
+        if (albedo) out[c] = std::min(out[c], 1.0f);
+    }
 }
 
 std::size_t Film::bytes() const noexcept {

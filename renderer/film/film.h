@@ -68,7 +68,9 @@ public:
     /// depend on the order.
     void merge(const Film& other);
     /// Means of what was added.
-    std::vector<Layer> layers() const;
+    std::vector<Layer> layers() const { return layers(window_); }
+    /// The same of a part of the window; other threads may add outside it.
+    std::vector<Layer> layers(const PixelWindow& part) const;
     std::size_t bytes() const noexcept;
 
     /// All that the film holds, as named arrays of plain numbers: what a checkpoint saves.
@@ -99,7 +101,7 @@ private:
     }
     void add_passes(std::size_t i, std::uint32_t index, const PathSample& s,
                     const PassSamples& passes, int lane) noexcept;
-    Layer layer_of(const Pass& pass, const Plane& plane) const;
+    void put_pixel(const Pass& pass, const Plane& plane, std::size_t i, float* out) const;
 
     PixelWindow window_;
     Passes passes_;

@@ -75,6 +75,7 @@ private:
                 return;
             }
             render_tile(tiles_[t], first, last);
+            if (settings_.on_tile) settings_.on_tile(tiles_[t], film_.layers(tiles_[t]));
             const double share =
                 static_cast<double>(finished.fetch_add(1) + 1) / static_cast<double>(tiles_.size());
             report(first + (last - first) * share, spp, last);
