@@ -122,7 +122,7 @@ enum class EnvironmentMap : std::uint8_t {
 
 /// What a material mirrors in place of the scene: a picture of all directions, taken near by.
 struct ReflectionMapDesc {
-    SourceLoc loc;
+    SourceLoc loc;     // of file, if it is written
     std::string file;  // resolved path
     EnvironmentMap projection = EnvironmentMap::automatic;
     std::string color_space;  // "" = linear working space
@@ -204,6 +204,7 @@ struct MaterialDesc {
     float displacement_offset = 0;
     ColorInput vector_displacement{{0, 0, 0}};
     DisplacementSpace displacement_space = DisplacementSpace::tangent;
+    SourceLoc displacement_loc;  // of a key of it; without a file: loc
 
     int dielectric_priority = 0;    // of nested glass the higher number fills the overlap
     bool use_vertex_color = false;  // base_color is multiplied by the mesh's vertex colours
@@ -363,6 +364,8 @@ struct EnvironmentDesc {
     Float3 radiance{1, 1, 1};  // constant, or the factor on the image
     double rotate_deg = 0;     // about +y
     bool visible = true;       // to camera rays
+    /// Of the keys; without a file: loc.
+    SourceLoc file_loc, faces_loc, camera_loc, lighting_loc, reflection_loc;
 };
 
 /// Whether it reads any picture.
