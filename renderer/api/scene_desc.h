@@ -122,7 +122,7 @@ enum class EnvironmentMap : std::uint8_t {
 
 /// What a material mirrors in place of the scene: a picture of all directions, taken near by.
 struct ReflectionMapDesc {
-    SourceLoc loc;
+    SourceLoc loc;     // of file, if it is written
     std::string file;  // resolved path
     EnvironmentMap projection = EnvironmentMap::automatic;
     std::string color_space;  // "" = linear working space
@@ -204,6 +204,7 @@ struct MaterialDesc {
     float displacement_offset = 0;
     ColorInput vector_displacement{{0, 0, 0}};
     DisplacementSpace displacement_space = DisplacementSpace::tangent;
+    SourceLoc displacement_loc;  // of a key of it; without a file: loc
 
     int dielectric_priority = 0;    // of nested glass the higher number fills the overlap
     std::string light_group;        // of what it emits
@@ -366,6 +367,8 @@ struct EnvironmentDesc {
     double rotate_deg = 0;     // about +y
     bool visible = true;       // to camera rays
     std::string light_group;
+    /// Of the keys; without a file: loc.
+    SourceLoc file_loc, faces_loc, camera_loc, lighting_loc, reflection_loc;
 };
 
 /// Whether it reads any picture.

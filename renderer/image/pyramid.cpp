@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <type_traits>
 
 #include "renderer/image/colour_names.h"
 #include "renderer/image/colour_space.h"
 #include "renderer/image/pixel_reader.h"
+#include "renderer/image/row_reducer.h"
 
 namespace tessera {
 namespace {
@@ -47,6 +50,40 @@ std::vector<Pyramid::Level> pyramid_levels(int width, int height) {
     }
 }
 
+/// Mean and constant channels of rows as they come.
+class Survey {
+public:
+    explicit Survey(std::size_t channels) : n_(channels) {}
+
+    void add(std::span<const float> row) {
+        texels_ += row.size() / n_;
+        for (std::size_t i = 0; i < row.size(); i += n_)
+            for (std::size_t c = 0; c < n_; ++c) {
+                sum_[c] += static_cast<double>(row[i + c]);
+                one_[c] = one_[c] && row[i + c] == 1.0f;
+            }
+    }
+
+    void tell(Pyramid& p) const {
+        const auto mean = [&](std::size_t c) {
+            return static_cast<float>(sum_[c] / static_cast<double>(texels_));
+        };
+        const bool grey = n_ < 3;
+        for (std::size_t c = 0; c < 3; ++c) {
+            p.mean[c] = mean(grey ? 0 : c);
+            p.is_one[c] = one_[grey ? 0 : c];
+        }
+        if (!p.has_alpha()) return;
+        p.mean[3] = mean(n_ - 1);
+        p.is_one[3] = one_[n_ - 1];
+    }
+
+private:
+    std::size_t n_, texels_ = 0;
+    std::array<double, 4> sum_{};
+    std::array<bool, 4> one_{true, true, true, true};
+};
+
 /// Fills a pyramid: level 0 from rows of a file, the rest from what was stored.
 class Builder {
 public:
@@ -55,9 +92,10 @@ public:
         n_ = static_cast<std::size_t>(p_.channels);
     }
 
-    /// Room for a picture of this size and all levels below it.
-    void allocate(int width, int height) {
+    /// Room for a picture of this size and all levels below it, or for no more than the picture.
+    void allocate(int width, int height, bool levels = true) {
         p_.levels = pyramid_levels(width, height);
+        if (!levels) p_.levels.resize(1);
         const std::size_t texels = p_.levels.back().first + p_.levels.back().texels();
         if (p_.type == TexelType::byte)
             p_.bytes.resize(texels * n_);
@@ -89,14 +127,44 @@ public:
 
     bool is_alpha(std::size_t channel) const { return p_.has_alpha() && channel + 1 == n_; }
 
+    /// Row y of level 0, decoded; n floats a texel.
+    std::span<float> decoded_row(int y) {
+        row_.resize(static_cast<std::size_t>(p_.levels[0].width) * n_);
+        float* texel = row_.data();
+        for (int x = 0; x < p_.levels[0].width; ++x, texel += n_)
+            for (std::size_t c = 0; c < n_; ++c) texel[c] = value_at(at(0, x, y) + c, c);
+        return row_;
+    }
+
+    /// Colours times their weight, as the rows of coarser levels are.
+    void weigh(std::span<float> row) const {
+        if (!weighted_) return;
+        for (float* texel = row.data(); texel != row.data() + row.size(); texel += n_)
+            for (std::size_t c = 0; c + 1 < n_; ++c) texel[c] *= texel[n_ - 1] + kAlphaFloor;
+    }
+
+    void store_row(std::size_t k, int y, std::span<const float> row) {
+        const float* from = row.data();
+        for (int x = 0; x < p_.levels[k].width; ++x, from += n_) {
+            const float scale = weighted_ ? 1 / (from[n_ - 1] + kAlphaFloor) : 1.0f;
+            for (std::size_t c = 0; c < n_; ++c)
+                put(at(k, x, y) + c, is_alpha(c) ? from[c] : from[c] * scale, is_alpha(c));
+        }
+    }
+
     /// Mean and constant channels of level 0, then the other levels.
     void finish() {
-        survey();
-        std::vector<float> above, below;
-        for (std::size_t k = 0; k + 1 < p_.levels.size(); ++k) {
-            shrink(k, above, below);
-            store(k + 1, below);
-            above.swap(below);
+        Survey survey(n_);
+        for (int y = 0; y < p_.levels[0].height; ++y) survey.add(decoded_row(y));
+        survey.tell(p_);
+        weighted_ = weighted_ && !p_.is_one[3];
+        RowReducer reducer(p_.levels, n_, [&](std::size_t k, int y, std::span<const float> row) {
+            store_row(k, y, row);
+        });
+        for (int y = 0; y < p_.levels[0].height; ++y) {
+            const std::span<float> row = decoded_row(y);
+            weigh(row);
+            reducer.push(row);
         }
     }
 
@@ -120,105 +188,12 @@ private:
         return imath_half_to_float(p_.words[at]);
     }
 
-    void survey() {
-        const Pyramid::Level& l = p_.levels[0];
-        const double texels = static_cast<double>(l.width) * l.height;
-        std::array<double, 4> sum{};
-        std::array<bool, 4> one{true, true, true, true};
-        for (int y = 0; y < l.height; ++y)
-            for (int x = 0; x < l.width; ++x)
-                for (std::size_t c = 0; c < n_; ++c) {
-                    const float v = value_at(at(0, x, y) + c, c);
-                    sum[c] += static_cast<double>(v);
-                    one[c] = one[c] && v == 1.0f;
-                }
-        const bool grey = n_ < 3;
-        for (std::size_t c = 0; c < 3; ++c) {
-            p_.mean[c] = static_cast<float>(sum[grey ? 0 : c] / texels);
-            p_.is_one[c] = one[grey ? 0 : c];
-        }
-        if (!p_.has_alpha()) return;
-        p_.mean[3] = static_cast<float>(sum[n_ - 1] / texels);
-        p_.is_one[3] = one[n_ - 1];
-        weighted_ = weighted_ && !p_.is_one[3];
-    }
-
-    /// A row of level k, colours times their weight. Level 0 is decoded, the others are at hand in
-    /// floats.
-    void row(std::size_t k, const std::vector<float>& level, int y, float* out) const {
-        const auto width = static_cast<std::size_t>(p_.levels[k].width);
-        if (k > 0) {
-            std::copy_n(level.data() + static_cast<std::size_t>(y) * width * n_, width * n_, out);
-            return;
-        }
-        for (int x = 0; x < p_.levels[0].width; ++x) {
-            float* texel = out + static_cast<std::size_t>(x) * n_;
-            for (std::size_t c = 0; c < n_; ++c) texel[c] = value_at(at(0, x, y) + c, c);
-            if (!weighted_) continue;
-            for (std::size_t c = 0; c + 1 < n_; ++c) texel[c] *= texel[n_ - 1] + kAlphaFloor;
-        }
-    }
-
-    /// Up to three texels of n that cover texel i of m, with the share each has in it.
-    struct Cover {
-        int first = 0;
-        int count = 0;
-        float share[3] = {0, 0, 0};
-    };
-    static Cover cover(int i, int n, int m) {
-        const std::int64_t from = std::int64_t(i) * n, to = std::int64_t(i + 1) * n;  // in 1/m
-        Cover c;
-        c.first = static_cast<int>(from / m);
-        for (std::int64_t t = c.first; t * m < to && c.count < 3; ++t) {
-            const std::int64_t overlap = std::min(to, (t + 1) * m) - std::max(from, t * m);
-            c.share[c.count++] = static_cast<float>(overlap) / static_cast<float>(n);
-        }
-        return c;
-    }
-
-    void shrink(std::size_t k, const std::vector<float>& above, std::vector<float>& below) const {
-        const Pyramid::Level& a = p_.levels[k];
-        const Pyramid::Level& b = p_.levels[k + 1];
-        const std::size_t wide = static_cast<std::size_t>(a.width) * n_;
-        std::vector<float> source(wide), blend(wide);
-        std::vector<Cover> columns;
-        for (int i = 0; i < b.width; ++i) columns.push_back(cover(i, a.width, b.width));
-        below.assign(static_cast<std::size_t>(b.width) * static_cast<std::size_t>(b.height) * n_,
-                     0.0f);
-        float* out = below.data();
-        for (int j = 0; j < b.height; ++j) {
-            const Cover rows = cover(j, a.height, b.height);
-            std::fill(blend.begin(), blend.end(), 0.0f);
-            for (int r = 0; r < rows.count; ++r) {
-                row(k, above, rows.first + r, source.data());
-                for (std::size_t x = 0; x < wide; ++x) blend[x] += rows.share[r] * source[x];
-            }
-            for (const Cover& column : columns) {
-                for (int t = 0; t < column.count; ++t) {
-                    const float* from =
-                        blend.data() + static_cast<std::size_t>(column.first + t) * n_;
-                    for (std::size_t c = 0; c < n_; ++c) out[c] += column.share[t] * from[c];
-                }
-                out += n_;
-            }
-        }
-    }
-
-    void store(std::size_t k, const std::vector<float>& level) {
-        const float* from = level.data();
-        for (int y = 0; y < p_.levels[k].height; ++y)
-            for (int x = 0; x < p_.levels[k].width; ++x, from += n_) {
-                const float scale = weighted_ ? 1 / (from[n_ - 1] + kAlphaFloor) : 1.0f;
-                for (std::size_t c = 0; c < n_; ++c)
-                    put(at(k, x, y) + c, is_alpha(c) ? from[c] : from[c] * scale, is_alpha(c));
-            }
-    }
-
     Pyramid& p_;
     std::size_t n_ = 0;
     bool srgb_;
     bool weighted_;
     SrgbEncoder encode_;
+    std::vector<float> row_;
 };
 
 /// A conversion may colour grey (a config's white point); then one channel is not enough.
@@ -320,36 +295,69 @@ int stored_channels(PixelReader& reader, const std::string& color_space,
     return picked < 3 && converted && !grey_stays_grey(color_space, colors) ? picked + 2 : picked;
 }
 
-std::int64_t pyramid_bytes(int width, int height, int channels, TexelType type) {
+std::int64_t pyramid_bytes(int width, int height, int channels, TexelType type, int skip) {
+    const std::vector<Pyramid::Level> levels = pyramid_levels(width, height);
     std::int64_t texels = 0;
-    for (const Pyramid::Level& l : pyramid_levels(width, height))
-        texels += static_cast<std::int64_t>(l.texels());
+    for (std::size_t k = static_cast<std::size_t>(skip); k < levels.size(); ++k)
+        texels += static_cast<std::int64_t>(levels[k].texels());
     return texels * channels * (type == TexelType::byte ? 1 : 2);
 }
 
 Pyramid build_pyramid(PixelReader& reader, const std::string& color_space,
-                      const ColorSpaces& colors, const ByteTables& tables) {
+                      const ColorSpaces& colors, const ByteTables& tables, int skip) {
     const ImageInfo& info = reader.info();
-    const ChannelPick pick = pick_channels(info.channels, reader.alpha_channel());
     Pyramid p;
     p.type = texel_type(reader, color_space, colors);
     p.channels = stored_channels(reader, color_space, colors);
     const bool srgb = p.type == TexelType::byte && !is_data_name(color_space);
     p.color_table = (srgb ? tables.srgb : tables.linear).data();
     p.alpha_table = tables.linear.data();
+    const Intake in{info.width, static_cast<std::size_t>(info.channels),
+                    pick_channels(info.channels, reader.alpha_channel())};
+    const auto read = [&](const auto& to) {
+        if (p.type == TexelType::byte)
+            reader.read_bytes(to);
+        else
+            reader.read_floats(to);
+    };
+    const auto take = [&](int y, const auto& rows, Builder& builder, Pyramid& into) {
+        if constexpr (std::is_same_v<decltype(rows[0]), const std::uint8_t&>)
+            take_bytes(in, y, rows, builder, into);
+        else
+            take_floats(in, y, rows, color_space, colors, builder, into);
+    };
 
+    Pyramid strip = p;
     Builder builder(p, srgb, !reader.premultiplied());
-    builder.allocate(info.width, info.height);
-    const Intake in{info.width, static_cast<std::size_t>(info.channels), pick};
-    if (p.type == TexelType::byte)
-        reader.read_bytes([&](int y, std::span<const std::uint8_t> rows) {
-            take_bytes(in, y, rows, builder, p);
-        });
-    else
-        reader.read_floats([&](int y, std::span<const float> rows) {
-            take_floats(in, y, rows, color_space, colors, builder, p);
-        });
-    builder.finish();
+    const std::vector<Pyramid::Level> levels = pyramid_levels(info.width, info.height);
+    const auto finest = static_cast<std::size_t>(skip);
+    builder.allocate(levels[finest].width, levels[finest].height);
+    if (skip == 0) {
+        read([&](int y, auto rows) { take(y, rows, builder, p); });
+        builder.finish();
+        return p;
+    }
+    // A strip at a time, stored and decoded as level 0 would have been.
+    Builder taken(strip, srgb, !reader.premultiplied());
+    Survey survey(static_cast<std::size_t>(p.channels));
+    RowReducer reducer(levels, static_cast<std::size_t>(p.channels),
+                       [&](std::size_t k, int y, std::span<const float> row) {
+                           if (k >= finest) builder.store_row(k - finest, y, row);
+                       });
+    read([&](int, auto rows) {
+        const auto count = static_cast<int>(in.texels(rows.size())) / info.width;
+        taken.allocate(info.width, count, false);
+        take(0, rows, taken, strip);
+        for (int y = 0; y < count; ++y) {
+            const std::span<float> row = taken.decoded_row(y);
+            survey.add(row);
+            taken.weigh(row);
+            reducer.push(row);
+        }
+    });
+    survey.tell(p);
+    p.non_finite = strip.non_finite;
+    p.clamped = strip.clamped;
     return p;
 }
 

@@ -69,10 +69,11 @@ struct ChannelPick {
 };
 ChannelPick pick_channels(int file_channels, int alpha_channel) noexcept;
 
-/// color_space: the resolved name; a data space changes nothing. Throws Error as the reader and
+/// color_space: the resolved name; a data space changes nothing. skip: finest levels that are left
+/// out and never held; what remains is what it would be with them. Throws Error as the reader and
 /// ColorSpaces::to_working do.
 Pyramid build_pyramid(PixelReader& reader, const std::string& color_space,
-                      const ColorSpaces& colors, const ByteTables& tables);
+                      const ColorSpaces& colors, const ByteTables& tables, int skip = 0);
 /// One texel of a linear 8-bit colour.
 Pyramid constant_pyramid(const std::array<std::uint8_t, 3>& rgb, const ByteTables& tables);
 
@@ -82,8 +83,8 @@ TexelType texel_type(PixelReader& reader, const std::string& color_space,
 /// What build_pyramid() will keep of each texel: more than the pick where a conversion colours
 /// grey.
 int stored_channels(PixelReader& reader, const std::string& color_space, const ColorSpaces& colors);
-/// Bytes of the texels of a pyramid of this size.
-std::int64_t pyramid_bytes(int width, int height, int channels, TexelType type);
+/// Bytes of the texels of a pyramid of this size without its first `skip` levels.
+std::int64_t pyramid_bytes(int width, int height, int channels, TexelType type, int skip = 0);
 
 /// A finite coordinate brought near the picture, so that no texel number is too large for an int;
 /// what it reads stays the same.

@@ -59,9 +59,22 @@ void grade(Texel& t, const Use& use) noexcept {
 
 std::string mib(std::int64_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }
 
-/// Whether the tile cache reads the file well: a piece at a time, with levels that are means of
-/// light.
-bool reads_well(const TextureSource& s) { return s.cacheable && s.tiled && !s.srgb; }
+/// Tells what a picture lost to the limit, and takes the size it is left with.
+void tell_place(TextureSource& s, const TextureOptions& options) {
+    if (s.tile >= 0 && fits_cache(s) && s.srgb && !options.auto_tx)
+        s.notes.push_back(named(s) + mib(s.bytes) +
+                          " in the tile cache, its coarser levels are means of sRGB codes: too "
+                          "dark at a distance (use --auto-tx)");
+    if (s.skip == 0) return;
+    const auto size = [&] { return std::to_string(s.width) + "x" + std::to_string(s.height); };
+    const std::string whole = size();
+    s.width = std::max(1, s.width >> s.skip);
+    s.height = std::max(1, s.height >> s.skip);
+    s.warnings.push_back(named(s) + (s.tiled ? "not fit for" : "untiled, too slow for") +
+                         " the tile cache; read as " + size() + " in place of " + whole +
+                         " to stay within the " + mib(options.memory_bytes) +
+                         " of --texture-memory (--auto-tx reads it whole)");
+}
 
 }  // namespace
 
@@ -72,7 +85,7 @@ struct TextureStore::Impl {
     std::vector<TileSet> sets;
     std::unique_ptr<TileCache> cache;
     std::map<std::pair<std::string, std::string>, std::size_t> known;
-    int made = 0, reused = 0;  // .tx files
+    std::map<const TextureSource*, bool> tx;  // that there are: whether they were made now
 
     void list(const std::vector<TextureRequest>& requests);
     std::size_t add_source(const std::string& file, const std::string& space, const SourceLoc& loc);
@@ -80,7 +93,7 @@ struct TextureStore::Impl {
     template <class Step>
     void for_each(Workers* workers, const Step& step);
     void place(const TextureOptions& options, const ColorSpaces& colors, Problems& problems);
-    void to_cache(TextureSource& s, const TextureOptions& options, const ColorSpaces& colors);
+    bool to_cache(TextureSource& s, const TextureOptions& options, const ColorSpaces& colors);
     bool by_tx(TextureSource& s, const std::string& folder, const ColorSpaces& colors);
     void report(Problems& problems);
 
@@ -179,65 +192,52 @@ bool TextureStore::Impl::by_tx(TextureSource& s, const std::string& folder,
         // Bytes stay codes; all else was made linear.
         s.tile = cache->add(path, s.channels, s.srgb && s.type == TexelType::byte);
         s.pyramid = {};
-        ++(there ? reused : made);
+        tx.try_emplace(&s, !there);
         return true;
     } catch (const Error& why) {
         s.pyramid = {};
+        s.no_tx = true;
         s.warnings.push_back(named(s) + "no .tx: " + why.what());
         return false;
     }
 }
 
-void TextureStore::Impl::to_cache(TextureSource& s, const TextureOptions& options,
+/// False if the file has to stay in memory after all.
+bool TextureStore::Impl::to_cache(TextureSource& s, const TextureOptions& options,
                                   const ColorSpaces& colors) {
     const std::string& folder = options.tx_folder.empty() ? default_tx_folder() : options.tx_folder;
-    if (options.auto_tx && !reads_well(s)) {
-        if (by_tx(s, folder, colors)) return;
-        if (s.fatal || s.in_core) return;  // magenta
+    if (options.auto_tx && !s.no_tx && !reads_well(s)) {
+        if (by_tx(s, folder, colors)) return true;
+        if (s.fatal || s.in_core) return true;  // magenta
     }
-    if (!s.cacheable) {
-        s.in_core = true;
-        load_pixels(s, colors, tables);
-        return;
-    }
+    if (!fits_cache(s)) return false;
     try {
         s.tile = cache->add(s.file, s.channels, s.srgb);
     } catch (const Error& error) {
-        return become_magenta(s, tables, error);
+        become_magenta(s, tables, error);
     }
-    const std::string size = named(s) + mib(s.bytes);
-    if (s.srgb)
-        s.notes.push_back(
-            size +
-            " in the tile cache, its coarser levels are means of sRGB codes: too dark "
-            "at a distance (use --auto-tx)");
-    else if (!s.tiled)
-        s.notes.push_back(
-            size +
-            " in the tile cache, not tiled or mip-mapped: slow to read (use --auto-tx, "
-            "or run 'maketx')");
+    return true;
 }
 
 /// Which sources go to the tile cache; it is filled by one thread, in the order of the requests.
 void TextureStore::Impl::place(const TextureOptions& options, const ColorSpaces& colors,
                                Problems& problems) {
-    const std::int64_t rest = place_sources(sources, options.memory_bytes, options.auto_tx);
-    if (rest == 0) return;
-    cache = std::make_unique<TileCache>(rest, tables);
-    for (TextureSource& s : sources)
-        if (!s.in_core && !s.fatal) to_cache(s, options, colors);
-    std::int64_t stuck = 0;
-    for (const TextureSource& s : sources)
-        if (s.in_core) stuck += s.bytes;
-    if (stuck > options.memory_bytes)
-        problems.warn({},
-                      "textures of " + mib(stuck) + " are kept in memory, over the limit of " +
-                          mib(options.memory_bytes) +
-                          ": the tile cache takes only pictures in sRGB, raw or the working space "
-                          "whose extension is that of their format (--auto-tx makes such)");
-    if (made + reused > 0)
+    // Again without those that turn out to have no .tx: now memory has to take them.
+    for (bool all_placed = false; !all_placed;) {
+        cache.reset();
+        for (TextureSource& s : sources) s.tile = -1;
+        const std::int64_t rest = place_sources(sources, options.memory_bytes, options.auto_tx);
+        if (rest > 0) cache = std::make_unique<TileCache>(rest, tables);
+        all_placed = true;
+        for (TextureSource& s : sources)
+            if (!s.in_core && !s.fatal) all_placed = to_cache(s, options, colors) && all_placed;
+    }
+    for (TextureSource& s : sources) tell_place(s, options);
+    const auto made = std::count_if(tx.begin(), tx.end(), [](const auto& t) { return t.second; });
+    if (!tx.empty())
         problems.note({}, "auto-tx: " + std::to_string(made) + " .tx made, " +
-                              std::to_string(reused) + " there from before");
+                              std::to_string(static_cast<std::ptrdiff_t>(tx.size()) - made) +
+                              " there from before");
 }
 
 /// In the order of the requests, after all are loaded.

@@ -1,7 +1,8 @@
 #pragma once
 // Filtered texture look-ups. Images live in memory as mip pyramids (8-bit with a decode table,
-// 16-bit, or half floats); those that a limit leaves no room for, or over kInCoreBytes, go through
-// OpenImageIO's tile cache. One interface: the caller does not see which.
+// 16-bit, or half floats). Those that a limit leaves no room for go through OpenImageIO's tile
+// cache if it can read them a piece at a time, or lose their finest levels; large tiled ones are
+// always there. One interface: the caller does not see which.
 
 #include <array>
 #include <cstdint>
@@ -45,6 +46,7 @@ using Texel = std::array<float, 4>;
 
 class TextureStore {
 public:
+    /// More than this is not read as a whole where the tile cache reads it as well.
     static constexpr std::int64_t kInCoreBytes = std::int64_t(64) << 20;
 
     /// Loads, in parallel if workers are given; results never depend on it. An unreadable file is

@@ -4,7 +4,6 @@
 #include <cctype>
 #include <filesystem>
 #include <new>
-#include <numeric>
 
 #include "renderer/image/colour_names.h"
 #include "renderer/image/colour_space.h"
@@ -66,13 +65,43 @@ void read_header(TextureSource& s, const ColorSpaces& colors) {
 
 void read_pixels(TextureSource& s, const ColorSpaces& colors, const ByteTables& tables) {
     PixelReader reader(s.file, ImageLimits());
-    s.pyramid = build_pyramid(reader, s.color_space, colors, tables);
+    s.pyramid = build_pyramid(reader, s.color_space, colors, tables, s.skip);
     if (s.pyramid.non_finite > 0)
         s.warnings.push_back(named(s) + std::to_string(s.pyramid.non_finite) +
                              " values are not finite; read as 0");
     if (s.pyramid.clamped > 0)
         s.warnings.push_back(named(s) + std::to_string(s.pyramid.clamped) +
                              " values are beyond 65504; clamped to that");
+}
+
+void set_skip(TextureSource& s, int skip) {
+    s.skip = skip;
+    if (s.bytes > 0) s.bytes = pyramid_bytes(s.width, s.height, s.channels, s.type, skip);
+}
+
+/// Drops the finest level of the largest, and so on. Returns the bytes of all.
+std::int64_t halve_until(const std::vector<TextureSource*>& sources, std::int64_t room) {
+    // The first of the largest in front.
+    const auto before = [](const TextureSource* a, const TextureSource* b) {
+        return a->bytes != b->bytes ? a->bytes < b->bytes : a > b;
+    };
+    std::vector<TextureSource*> heap = sources;
+    std::make_heap(heap.begin(), heap.end(), before);
+    std::int64_t total = 0;
+    for (const TextureSource* s : sources) total += s->bytes;
+    while (total > room && !heap.empty()) {
+        std::pop_heap(heap.begin(), heap.end(), before);
+        TextureSource& s = *heap.back();
+        if (std::max(s.width, s.height) >> (s.skip + 1) == 0) {
+            heap.pop_back();
+            continue;
+        }
+        total -= s.bytes;
+        set_skip(s, s.skip + 1);
+        total += s.bytes;
+        std::push_heap(heap.begin(), heap.end(), before);
+    }
+    return total;
 }
 
 /// Every failure of the file told and turned into magenta.
@@ -117,29 +146,34 @@ void load_pixels(TextureSource& s, const ColorSpaces& colors, const ByteTables& 
 }
 
 std::int64_t place_sources(std::vector<TextureSource>& sources, std::int64_t memory_bytes,
-                           bool any_cacheable) {
-    const auto must_stay = [&](const TextureSource& s) { return !any_cacheable && !s.cacheable; };
+                           bool auto_tx) {
+    const auto may_leave = [&](const TextureSource& s) {
+        return s.bytes > 0 && (fits_cache(s) || (auto_tx && !s.no_tx));
+    };
+    const auto is_large = [](const TextureSource& s) {
+        return s.finest_bytes > TextureStore::kInCoreBytes;
+    };
     std::int64_t total = 0;
-    bool all_small = true;
-    for (const TextureSource& s : sources) {
+    bool any_leaves = false, any_large = false;
+    std::vector<TextureSource*> staying, leaving;
+    for (TextureSource& s : sources) {
+        set_skip(s, 0);
+        s.in_core = true;
         total += s.bytes;
-        all_small = all_small && (s.finest_bytes <= TextureStore::kInCoreBytes || must_stay(s));
+        (may_leave(s) ? leaving : staying).push_back(&s);
+        any_leaves = any_leaves || may_leave(s);
+        any_large = any_large || (reads_well(s) && is_large(s));
     }
-    if (all_small && total <= memory_bytes) return 0;
-    std::vector<std::size_t> order(sources.size());
-    std::iota(order.begin(), order.end(), std::size_t(0));
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        const bool stays = must_stay(sources[a]), other = must_stay(sources[b]);
-        return stays != other ? stays : sources[a].bytes < sources[b].bytes;
-    });
-    std::int64_t used = 0;
-    for (const std::size_t i : order) {
-        TextureSource& s = sources[i];
-        s.in_core =
-            s.bytes == 0 || must_stay(s) ||
-            (s.finest_bytes <= TextureStore::kInCoreBytes && used + s.bytes <= memory_bytes / 2);
-        if (s.in_core) used += s.bytes;
+    if (!any_large && total <= memory_bytes) return 0;
+    const std::int64_t room = any_leaves ? memory_bytes / 2 : memory_bytes;
+    std::int64_t used = halve_until(staying, room);
+    std::stable_sort(leaving.begin(), leaving.end(),
+                     [](const auto* a, const auto* b) { return a->bytes < b->bytes; });
+    for (TextureSource* s : leaving) {
+        s->in_core = !is_large(*s) && used + s->bytes <= room;
+        if (s->in_core) used += s->bytes;
     }
+    if (leaving.empty()) return 0;
     // The cache's own limit is on texels: its tables, open files and the heap's gaps come on top.
     const std::int64_t rest = std::max<std::int64_t>(0, memory_bytes - used);
     return std::max<std::int64_t>(1, rest - rest / 8);

@@ -26,9 +26,11 @@ struct TextureSource {
     std::int64_t finest_bytes = 0;     // its finest level
     bool tiled = false;                // and mip-mapped
     bool cacheable = false;            // as it is: see survey()
+    bool no_tx = false;                // none can be made
 
     Pyramid pyramid;
     bool in_core = true;
+    int skip = 0;          // finest levels that memory has no room for
     bool magenta = false;  // it could not be read
     int tile = -1;         // in the tile cache instead
 
@@ -44,14 +46,20 @@ std::string named(const TextureSource& s);
 /// cannot be read becomes magenta, told in damages or warnings. Never throws: see error and fatal.
 void survey(TextureSource& s, const ColorSpaces& colors, const ByteTables& tables) noexcept;
 
-/// Decides in_core for all, by sizes and order alone: everything if it fits; else pictures up to
-/// kInCoreBytes, the smallest first, in half of the memory. Those that are not cacheable come
-/// before all others, whatever the limit, unless any can be made so. Returns what is left for the
-/// cache, in bytes.
-std::int64_t place_sources(std::vector<TextureSource>& sources, std::int64_t memory_bytes,
-                           bool any_cacheable);
+/// Whether the tile cache reads the file a piece at a time.
+inline bool fits_cache(const TextureSource& s) { return s.cacheable && s.tiled; }
+/// And the levels in it are means of light.
+inline bool reads_well(const TextureSource& s) { return fits_cache(s) && !s.srgb; }
 
-/// Builds the pyramid. Never throws: as survey().
+/// Decides in_core and skip for all, by sizes and order alone, and tells in `bytes` what a pyramid
+/// will be. Everything is in memory if it fits, but for what the cache reads well and is over
+/// kInCoreBytes. Else what cannot be in the cache comes before all others, the largest halved until
+/// it fits; then what is up to kInCoreBytes, the smallest first. Pictures in memory get half of it
+/// if any may be in the cache. Returns what is left for the cache, in bytes; 0: nothing is in it.
+std::int64_t place_sources(std::vector<TextureSource>& sources, std::int64_t memory_bytes,
+                           bool auto_tx);
+
+/// Builds the pyramid, without its first `skip` levels. Never throws: as survey().
 void load_pixels(TextureSource& s, const ColorSpaces& colors, const ByteTables& tables) noexcept;
 
 void become_magenta(TextureSource& s, const ByteTables& tables, const Error& why);

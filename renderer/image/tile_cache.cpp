@@ -157,10 +157,6 @@ TileCache::TileCache(std::int64_t bytes, const ByteTables& tables)
     share_heap();
     OIIO::ImageCache& cache = *impl_->cache;
     cache.attribute("max_memory_MB", static_cast<float>(bytes) / (1 << 20));
-    cache.attribute("autotile", 64);
-    cache.attribute("automip", 1);
-    cache.attribute("accept_untiled", 1);
-    cache.attribute("accept_unmipped", 1);
     cache.attribute("unassociatedalpha", 1);  // values as stored
 }
 

@@ -29,7 +29,8 @@ public:
         }
     }
 
-    void read(const SourceLoc& from) {
+    /// written: where and how the scene names the document.
+    void read(const Value& written) {
         const std::size_t before = reader_.materialx.size();
         bool some = false;
         for (const MtlxElement* one : reading_.document.top()) {
@@ -44,16 +45,11 @@ public:
             }
         }
         if (!some && reader_.materialx.size() == before)
-            reading_.damage(from, "materialx: '" + (from.file ? name_of_first() : "") +
-                                      "' holds no surfacematerial");
+            reading_.damage(written.loc,
+                            "materialx: '" + *written.text() + "' holds no surfacematerial");
     }
 
 private:
-    std::string name_of_first() const {
-        const auto& top = reading_.document.top();
-        return top.empty() ? std::string("the document") : *top.front()->loc.file;
-    }
-
     void read_material(const MtlxElement& element, bool old) {
         const std::string name = element.name();
         if (name.empty()) return reading_.damage(element.loc, element.category + " has no name");
@@ -128,7 +124,7 @@ void read_materialx(const Value& document, SceneReader& reader) {
             continue;
         }
         const MtlxDocument read(found.path, file.loc, reader);
-        MaterialXReader(read, reader, colors).read(file.loc);
+        MaterialXReader(read, reader, colors).read(file);
     }
 }
 

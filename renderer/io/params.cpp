@@ -11,6 +11,9 @@ namespace {
 
 using Kind = Form::Kind;
 
+constexpr const char* kImage = "an image ({ file = ... }), ";
+constexpr const char* kNode = "a node ({ type = ... }) or layers ({ layers = [...] })";
+
 bool is_number(const Value& value) {
     return std::holds_alternative<std::int64_t>(value.data) ||
            std::holds_alternative<double>(value.data);
@@ -190,11 +193,13 @@ std::string describe(const Form& form) {
             return "a table";
         case Kind::tables:
             return "tables ([[...]])";
-        case Kind::input:
-            return (form.count == 3 ? "a number, 3 numbers in brackets" : "a number") +
-                   std::string(" or an image ({ file = ... })");
+        case Kind::input: {
+            const std::string list =
+                form.count > 1 ? std::to_string(form.count) + " numbers in brackets, " : "";
+            return "a number, " + list + kImage + kNode;
+        }
         case Kind::image:
-            return "an image ({ file = ... })";
+            return std::string(form.tables.empty() ? "" : kImage) + kNode;
     }
     return {};
 }

@@ -46,8 +46,8 @@ struct Form {
         table,         // the keys of tables[0]
         tables,        // [[key]]: each has the keys of one of tables
         named_tables,  // [key.NAME]: each has the keys of tables[0]
-        input,         // a number (count 1) or colour (count 3), or an image: tables[0]
-        image,         // an image only: tables[0]
+        input,         // a number (count 1) or colour (count 3), an image: tables[0], or a node
+        image,         // an image: tables[0], if there is one, or a node
         free_tables,   // [key.NAME] or [[key]] of a form of their own
     };
     Kind kind = Kind::number;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <tuple>
 
 #include "renderer/io/light_group_key.h"
 #include "renderer/io/params.h"
@@ -122,21 +123,23 @@ std::optional<SkyDesc::PlaceAndTime> parse_time(const std::string& text) {
     return t;
 }
 
-/// The path of an image; "" after an error.
-std::string find_image(const std::string& file, const Value& written, SceneReader& reader,
-                       const ReadContext& at) {
+/// The path of the image that a key names; "" after an error.
+std::string find_image(const std::string& key, const std::string& file, const Value& written,
+                       SceneReader& reader, const ReadContext& at) {
     const TextureFiles files = find_texture_files(
         reader.assets, file, reader.folder_of(written.loc), reader.scene.render.frame);
     const AssetPath& found = files.found;
     if (!files.tiles.empty()) {
-        at.problems.error(written.loc, at.subject + ": file '" + file + "' is a set of tiles");
+        at.problems.error(written.loc,
+                          at.subject + ": " + key + " '" + file + "' is a set of tiles");
         return {};
     }
     if (found.path.empty())
         at.problems.error(written.loc,
-                          at.subject + ": file '" + files.name + "' " +
+                          at.subject + ": " + key + " '" + files.name + "' " +
                               (files.missing_frame.empty() ? found.reason : files.missing_frame));
-    if (!found.note.empty()) at.problems.note(written.loc, at.subject + ": " + found.note);
+    if (!found.note.empty())
+        at.problems.note(written.loc, at.subject + ": " + key + " " + found.note);
     return found.path;
 }
 
@@ -170,7 +173,8 @@ std::optional<ReflectionMapDesc> read_reflection_map(const Value& value, SceneRe
     const ReadContext here{at.problems, at.subject + ": reflection_map"};
     read_keys(value, reflection_map_keys(), map, here);
     if (map.file.empty()) return std::nullopt;  // reported as missing
-    map.file = find_image(map.file, *value.find("file"), reader, here);
+    map.loc = value.find("file")->loc;
+    map.file = find_image("file", map.file, *value.find("file"), reader, here);
     const auto wrong = [&](const char* key, const std::string& message) {
         at.problems.error(value.find(key)->loc, here.subject + ": " + message);
     };
@@ -197,20 +201,25 @@ void read_environment(const Value& table, SceneReader& reader) {
     for (float& channel : environment.radiance) {
         channel = static_cast<float>(std::min(double(channel) * entry.scale, Limits::kLargest));
     }
-    for (const auto& [name, file] : {std::pair{"file", &environment.file},
-                                     {"camera", &environment.camera},
-                                     {"lighting", &environment.lighting},
-                                     {"reflection", &environment.reflection}}) {
-        if (!file->empty()) *file = find_image(*file, *table.find(name), reader, at);
+    EnvironmentDesc& e = environment;
+    for (const auto& [name, file, loc] : {std::tuple{"file", &e.file, &e.file_loc},
+                                          {"camera", &e.camera, &e.camera_loc},
+                                          {"lighting", &e.lighting, &e.lighting_loc},
+                                          {"reflection", &e.reflection, &e.reflection_loc}}) {
+        if (file->empty()) continue;
+        *loc = table.find(name)->loc;
+        *file = find_image(name, *file, *table.find(name), reader, at);
     }
     if (!environment.faces.empty()) {
         const Value& written = *table.find("faces");
+        environment.faces_loc = written.loc;
         if (environment.faces.size() != 6 || !environment.file.empty()) {
             at.problems.error(
                 written.loc, "environment: faces are six images, and there is no file beside them");
             environment.faces.clear();
         }
-        for (std::string& face : environment.faces) face = find_image(face, written, reader, at);
+        for (std::string& face : environment.faces)
+            face = find_image("faces", face, written, reader, at);
     }
     reader.scene.environment = environment;
 }

@@ -31,6 +31,10 @@ void read_graph(Input MaterialDesc::*member, const Value& value, const Key& key,
     set_input(target.material.*member, *node);
 }
 
+bool same_place(const SourceLoc& a, const SourceLoc& b) {
+    return a.file == b.file && a.line == b.line && a.column == b.column;
+}
+
 bool is_image(const Value& value) { return value.table() != nullptr; }
 
 Form input_form(int count, const Limits& limits, const KeySet<TextureEntry>& image) {
@@ -45,7 +49,8 @@ Form input_form(int count, const Limits& limits, const KeySet<TextureEntry>& ima
 std::optional<Plain> plain_input(const Value& value, const Key& key, const ReadContext& at) {
     const bool writable = value.list() || std::holds_alternative<double>(value.data) ||
                           std::holds_alternative<std::int64_t>(value.data);
-    if (!writable || (key.form.count == 1 && value.list())) {
+    const auto count = static_cast<std::size_t>(key.form.count);
+    if (!writable || (value.list() && (count == 1 || value.list()->size() != count))) {
         report_misfit(value, key.name, describe(key.form), at);
         return std::nullopt;
     }
@@ -116,10 +121,11 @@ Key normal_input(const NormalKey& normal) {
             input = {add_texture(value, entry, at, target.reader), entry.scale_normal,
                      entry.convention == NormalConvention::directx};
         } else {
-            report_misfit(value, key.name, normal.takes_maps ? describe(key.form) : "a node", at);
+            report_misfit(value, key.name, describe(key.form), at);
         }
     };
-    const Form form{.kind = Form::Kind::image, .tables = {&normal_texture_keys().list}};
+    Form form{.kind = Form::Kind::image, .tables = {&normal_texture_keys().list}};
+    if (!normal.takes_maps) form.tables.clear();
     return {normal.name, form, normal.help, store};
 }
 
@@ -260,6 +266,12 @@ private:
         NodeReader nodes(material, reader_, named);
         MaterialTarget target{material, reader_, nodes};
         read_keys(table, material_rows(), target, at);
+        for (const char* key :
+             {"displacement_scale", "displacement", "vector_displacement", "displacement_offset"})
+            if (const Value* written = table.find(key)) {
+                material.displacement_loc = written->loc;
+                break;
+            }
         if (const Value* layers = table.find("layer"))
             read_material_layers(*layers, material, nodes, at);
         nodes.read_unused(table.find("node"), at);
@@ -308,8 +320,12 @@ private:
             for (const auto& [known, other] : *tables_.table()) {
                 if (known != name) names.push_back(known);
             }
-            at.problems.error(inherits->loc, at.subject + ": there is no material '" + parent +
-                                                 "' to inherit from" + did_you_mean(parent, names));
+            // --set of a name that is not there: nobody wrote "inherits".
+            const bool implied = parent == name && same_place(inherits->loc, table.loc);
+            at.problems.error(inherits->loc, (implied ? "there is no material '" + parent + "'"
+                                                      : at.subject + ": there is no material '" +
+                                                            parent + "' to inherit from") +
+                                                 did_you_mean(parent, names));
             return {};
         }
         return reader_.scene.materials[static_cast<std::size_t>(reader_.materials.at(parent))];

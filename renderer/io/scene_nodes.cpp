@@ -83,8 +83,12 @@ std::optional<NodeValue> NodeReader::read_plain(const Value& value, NodeType wan
                                                 const std::string& key, const ReadContext& at) {
     const int count = wanted == NodeType::vector2 ? 2 : 3;
     const bool list = value.list() != nullptr;
-    if (list && wanted == NodeType::scalar) {
-        report_misfit(value, key, "a number or a node", at);
+    const bool number = std::holds_alternative<double>(value.data) ||
+                        std::holds_alternative<std::int64_t>(value.data);
+    const int takes = wanted == NodeType::scalar ? 1 : count;
+    const bool long_enough = list && takes > 1 && value.list()->size() == std::size_t(takes);
+    if (!number && !long_enough) {
+        report_misfit(value, key, describe({.kind = Form::Kind::input, .count = takes}), at);
         return std::nullopt;
     }
     Key row{key, {.kind = Form::Kind::numbers, .count = count, .or_one = true}, "", nullptr};
@@ -399,7 +403,9 @@ NodeValue NodeReader::node_of(const NormalInput& input, bool normal) {
 std::optional<NodeValue> NodeReader::read_normal(const Value& value, const std::string& key,
                                                  const ReadContext& at) {
     if (!value.table()) {
-        report_misfit(value, key, "a normal map or a node", at);
+        report_misfit(
+            value, key,
+            describe({.kind = Form::Kind::image, .tables = {&normal_texture_keys().list}}), at);
         return std::nullopt;
     }
     if (is_graph(value)) {

@@ -137,7 +137,6 @@ private:
             case Kind::choice:
                 return texts_schema(form);
             case Kind::table:
-            case Kind::image:
                 return reference(*form.tables[0]);
             case Kind::tables:
                 return Object().add("type", "\"array\"").add("items", one_of(form.tables)).text();
@@ -148,10 +147,12 @@ private:
                     .text();
             case Kind::free_tables:
                 return R"({"type":["object","array"]})";
-            case Kind::input: {
-                std::vector<std::string> ways{number_schema(form)};
+            case Kind::input:
+            case Kind::image: {
+                std::vector<std::string> ways;
+                if (form.kind == Kind::input) ways.push_back(number_schema(form));
                 if (form.count > 1) ways.push_back(list_schema(ways[0], form.count));
-                ways.push_back(reference(*form.tables[0]));
+                if (!form.tables.empty()) ways.push_back(reference(*form.tables[0]));
                 for (const char* key : {"type", "node", "layers"})
                     ways.push_back(std::string(R"({"type":"object","required":[")") + key + "\"]}");
                 return Object().add("anyOf", array(ways)).text();

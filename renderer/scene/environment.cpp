@@ -16,6 +16,12 @@ constexpr int kSkyHeight = 512;
 
 Color color_of(const Float3& c) { return {c[0], c[1], c[2]}; }
 
+/// How the image that a key names is read.
+MapFile map_of(const EnvironmentDesc& desc, const std::string& key, const SourceLoc& loc) {
+    return {"environment: " + key, loc.file ? loc : desc.loc, desc.projection,
+            desc.color_space,      color_of(desc.radiance),   desc.rotate_deg};
+}
+
 std::shared_ptr<const LatLongMap> own_map(const std::string& file, const MapFile& how,
                                           const EmitterInput& in) {
     if (file.empty()) return nullptr;
@@ -24,38 +30,40 @@ std::shared_ptr<const LatLongMap> own_map(const std::string& file, const MapFile
 }
 
 // What surfaces are lit by; constant without a file.
-std::optional<LatLongMap> lighting_map(const EnvironmentDesc& desc, const MapFile& how,
-                                       const EmitterInput& in) {
-    if (!desc.lighting.empty()) return read_map(how, desc.lighting, *in.colors, in.problems);
-    if (!desc.faces.empty()) return read_faces(how, desc.faces, *in.colors, in.problems);
-    if (!desc.file.empty()) return read_map(how, desc.file, *in.colors, in.problems);
+std::optional<LatLongMap> lighting_map(const EnvironmentDesc& desc, const EmitterInput& in) {
+    if (!desc.lighting.empty())
+        return read_map(map_of(desc, "lighting", desc.lighting_loc), desc.lighting, *in.colors,
+                        in.problems);
+    if (!desc.faces.empty())
+        return read_faces(map_of(desc, "faces", desc.faces_loc), desc.faces, *in.colors,
+                          in.problems);
+    if (!desc.file.empty())
+        return read_map(map_of(desc, "file", desc.file_loc), desc.file, *in.colors, in.problems);
     LatLongMap map;
-    map.scale = how.scale;
+    map.scale = color_of(desc.radiance);
     return map;
 }
 
 // What the others fall back to where lighting has an image of its own.
-std::shared_ptr<const LatLongMap> common_map(const EnvironmentDesc& desc, const MapFile& how,
-                                             const EmitterInput& in) {
+std::shared_ptr<const LatLongMap> common_map(const EnvironmentDesc& desc, const EmitterInput& in) {
     EnvironmentDesc common = desc;
     common.lighting.clear();
-    auto map = lighting_map(common, how, in);
+    auto map = lighting_map(common, in);
     return map ? std::make_shared<const LatLongMap>(std::move(*map)) : nullptr;
 }
 
 }  // namespace
 
 std::optional<Light> make_environment(const EnvironmentDesc& desc, const EmitterInput& in) {
-    const MapFile how{"environment",           desc.loc,       desc.projection, desc.color_space,
-                      color_of(desc.radiance), desc.rotate_deg};
-    if (!(max_component(how.scale) > 0.0f) && !has_image(desc)) return std::nullopt;
-    auto map = lighting_map(desc, how, in);
+    if (!(max_component(color_of(desc.radiance)) > 0.0f) && !has_image(desc)) return std::nullopt;
+    auto map = lighting_map(desc, in);
     if (!map) return std::nullopt;
     EnvironmentLight light = make_environment(std::move(*map), desc.visible);
-    light.camera = own_map(desc.camera, how, in);
-    light.reflection = own_map(desc.reflection, how, in);
+    light.camera = own_map(desc.camera, map_of(desc, "camera", desc.camera_loc), in);
+    light.reflection =
+        own_map(desc.reflection, map_of(desc, "reflection", desc.reflection_loc), in);
     if (!desc.lighting.empty() && (!light.camera || !light.reflection)) {
-        const auto common = common_map(desc, how, in);
+        const auto common = common_map(desc, in);
         if (!light.camera) light.camera = common;
         if (!light.reflection) light.reflection = common;
     }

@@ -160,7 +160,7 @@ std::shared_ptr<const ReflectionMap> make_reflection_map(const MaterialDesc& mat
                                                          const ColorSpaces& colors,
                                                          Problems& problems) {
     const ReflectionMapDesc& desc = *material.reflection_map;
-    const MapFile how{fmt::format("material '{}': reflection_map", material.name),
+    const MapFile how{fmt::format("material '{}': reflection_map: file", material.name),
                       desc.loc,
                       desc.projection,
                       desc.color_space,

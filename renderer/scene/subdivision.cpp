@@ -195,11 +195,12 @@ private:
         int material = slot < mesh.materials.size() ? mesh.materials[slot] : -1;
         for (std::size_t m = 0; m < in_.displacements.size(); ++m)
             if (&in_.displacements[m] == input.by_slot[slot]) material = static_cast<int>(m);
+        const MaterialDesc& m = in_.desc.materials[material];
         in_.problems.error(
-            in_.desc.materials[material].loc,
+            m.displacement_loc.file ? m.displacement_loc : m.loc,
             fmt::format("material '{}': displacement moves mesh '{}' by {:.3g} of its units, more "
                         "than {} times its size; lower displacement_scale",
-                        in_.desc.materials[material].name, mesh.name, report.farthest, kFarthest));
+                        m.name, mesh.name, report.farthest, kFarthest));
     }
 
     const SubdivisionInput& in_;

@@ -96,6 +96,16 @@ class Textures(TesseraTest):
         self.assert_same_bits(memory, again)
         self.assertEqual(sorted(p.name for p in tx.iterdir()), made)
 
+    def test_without_auto_tx_what_does_not_fit_is_halved_and_named(self):
+        size = 3600  # 49 MiB with its coarser levels
+        self.write("a.tif", tiff(size, size, bytes(size * size * 3)))
+        self.scene("a.tif")
+        run = self.expect(0, "render", "scene.toml", "-o", "out.exr", "--stats", "stats.json", "--texture-memory", 32)
+        self.assertRegex(run.err, r"warning: scene\.toml:18:\d+: texture '.*/a\.tif': .*1800x1800.*--auto-tx")
+        stats = json.loads((self.folder / "stats.json").read_text())
+        self.assertLessEqual(stats["memory_bytes"]["textures"], 32 << 20)
+        self.expect(SCENE, "render", "scene.toml", "-o", "out.exr", "--texture-memory", 32, "--strict")
+
     def test_the_cache_folder_follows_the_environment(self):
         size = 3600
         self.write("a.tif", tiff(size, size, bytes(size * size * 3)))

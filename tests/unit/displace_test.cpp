@@ -507,6 +507,8 @@ TEST_CASE("displace: what cannot be made is refused with its place") {
     far.materials[0].displacement.value = 200;
     CHECK(
         has(refusal(far), "s.toml:20:1: material 'moved': displacement moves mesh 'cage' by 200 "));
+    far.materials[0].displacement_loc = {file, 21, 4};
+    CHECK(has(refusal(far), "s.toml:21:4: material 'moved': displacement moves"));
     far.materials[0].displacement.value = 100;
     CHECK(refusal(far).empty());
     SceneDesc bare = s;

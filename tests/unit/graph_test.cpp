@@ -280,8 +280,34 @@ TEST_CASE("graph: layers of a material drive several inputs by one mask") {
     CHECK(failure("ruoghness = 1")
               .find("s.toml:4:1: material 'a': layer[0]: unknown input "
                     "'ruoghness' (did you mean 'specular_roughness'?)") != std::string::npos);
-    CHECK(failure("geometry_normal = 1").find("a normal map or a node") != std::string::npos);
+    CHECK(failure("geometry_normal = 1").find("an image ({ file = ... }), a node") !=
+          std::string::npos);
     CHECK(failure("opacity = 2").find("opacity is 2") != std::string::npos);
+}
+
+TEST_CASE("graph: a message about a wrong value names all that an input takes") {
+    const SceneFolder folder;
+    const auto failure = [&](const std::string& text) {
+        return folder.failure("[material.a]\n" + text);
+    };
+    const std::string rest =
+        "an image ({ file = ... }), a node ({ type = ... }) or layers ({ layers = [...] })";
+    const std::string color = ", must be a number, 3 numbers in brackets, " + rest;
+    const std::string scalar = ", must be a number, " + rest;
+    CHECK(failure("base_color = true") == "s.toml:3:1: material 'a': base_color is true" + color);
+    CHECK(failure("base_color = [1, 2]") ==
+          "s.toml:3:1: material 'a': base_color is an array of 2" + color);
+    CHECK(failure("specular_roughness = [1, 2, 3]") ==
+          "s.toml:3:1: material 'a': specular_roughness is an array of 3" + scalar);
+    CHECK(failure("base_color = { type = 'mix', fg = 'red', mix = 0.5 }")
+              .ends_with("base_color: fg is 'red'" + color));
+    CHECK(failure("base_color = { type = 'mix', fg = 1, mix = [1, 2] }")
+              .ends_with("base_color: mix is an array of 2" + scalar));
+    CHECK(failure("[[material.a.layer]]\nmask = 'all'\nbase_color = 1")
+              .ends_with("layer[0]: mask is 'all'" + scalar));
+    CHECK(failure("geometry_normal = 1").ends_with("geometry_normal is 1, must be " + rest));
+    CHECK(failure("geometry_tangent = 1")
+              .ends_with("is 1, must be a node ({ type = ... }) or layers ({ layers = [...] })"));
 }
 
 TEST_CASE("presets: each reads without a word and compiles, and a mistyped one is helped") {

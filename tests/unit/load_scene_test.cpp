@@ -80,9 +80,12 @@ TEST_CASE("set: an error is located at the option") {
     CHECK(folder.failure("", {"light.key.visible=true"}) ==
           "--set light.key.visible=true: the scene has no [[light]]");
     CHECK(folder.failure("[material.floor]", {"material.flor.base_color=1"}) ==
-          "--set material.flor.base_color=1: material 'flor': there is no material 'flor' to "
-          "inherit from "
-          "(did you mean 'floor'?)");
+          "--set material.flor.base_color=1: there is no material 'flor' (did you mean 'floor'?)");
+    CHECK(folder.failure("[material.floor]", {"material.flor.inherits=\"flor\""}) ==
+          "--set material.flor.inherits=\"flor\": there is no material 'flor' (did you mean "
+          "'floor'?)");
+    CHECK(folder.failure("[material.floor]\ninherits = 'floor'") ==
+          "s.toml:3:1: material 'floor': there is no material 'floor' to inherit from");
 }
 
 TEST_CASE("set: what is no assignment is a usage error") {

@@ -152,6 +152,7 @@ TEST_CASE("mtlx: a document without a material, and surfaces of other kinds, are
     const MtlxFolder folder;
     CHECK(folder.refusal(mtlx("<nodegraph name='g'/>")) ==
           "s.toml:2:14: materialx: 'a.mtlx' holds no surfacematerial");
+    CHECK(folder.refusal(mtlx("")) == "s.toml:2:14: materialx: 'a.mtlx' holds no surfacematerial");
     CHECK(folder.refusal(mtlx_surface("", "", "gltf_pbr")) ==
           "a.mtlx:3:1: gltf_pbr 's': surface 'gltf_pbr' is not read, 'open_pbr_surface' and "
           "'standard_surface' are");

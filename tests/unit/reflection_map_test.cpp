@@ -172,7 +172,7 @@ TEST_CASE("reflection map: wrong ones are errors at their place") {
     says("{ file = 'one.exr', position = [0,0,0], radius = 1, box = [[0,0,0],[1,1,1]] }",
          "both say where the walls are");
     says("{ file = 'one.exr', projection = 'angular' }",
-         "s.toml:5:18: material 'm': reflection_map '");
+         "s.toml:5:20: material 'm': reflection_map: file '");
     folder.write("text.exr", "no picture");
-    says("{ file = 'text.exr' }", "s.toml:5:18: material 'm': reflection_map: ");
+    says("{ file = 'text.exr' }", "s.toml:5:20: material 'm': reflection_map: file: image '");
 }

@@ -70,6 +70,24 @@ TEST_CASE("scene displacement: keys that contradict each other or do nothing are
                    "subdivision"));
 }
 
+TEST_CASE("scene displacement: one that moves too far is told at the key that says how far") {
+    const SceneFolder folder;
+    folder.write("sheet.obj", kSheet);
+    const auto refusal = [&](const std::string& keys) {
+        try {
+            build_scene(folder.load(mesh_keys("subdivision = 'linear'\nmaterial = 'far'\n") +
+                                    "[material.far]\nbase_color = 1\n" + keys));
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    const std::string moved = ": material 'far': displacement moves mesh";
+    CHECK(refusal("displacement = 1e6").find("/s.toml:8:1" + moved) != std::string::npos);
+    CHECK(refusal("displacement = 1\ndisplacement_scale = 1e6").find("/s.toml:9:1" + moved) !=
+          std::string::npos);
+}
+
 TEST_CASE("scene displacement: an image moves the surface by what it holds, raw, filtered") {
     const SceneFolder folder;
     folder.write("sheet.obj", kSheet);

@@ -87,6 +87,34 @@ TEST_CASE(
               .find("squares of one size") != std::string::npos);
 }
 
+TEST_CASE("environment: an image that is wrong is told by its key, at its place") {
+    const SceneFolder folder;
+    write_cells(folder.path("wide.tif"), 2, 1, {50, 60});
+    write_cells(folder.path("square.tif"), 1, 1, {50});
+    folder.write("broken.tif", "II*");
+    const auto says = [&](const std::string& text, const std::string& what) {
+        std::string message;
+        try {
+            build_scene(folder.load("[environment]\n" + text));
+        } catch (const Error& error) {
+            message = error.what();
+        }
+        CAPTURE(message);
+        CHECK(message.find(what) != std::string::npos);
+    };
+    for (const std::string key : {"file", "camera", "lighting", "reflection"}) {
+        const std::string place = "/s.toml:3:1: environment: " + key;
+        says(key + " = 'gone.tif'", place + " 'gone.tif' not found");
+        says(key + " = 'broken.tif'", place + ": image '" + folder.path("broken.tif") + "'");
+        says(key + " = 'wide.tif'\nprojection = 'angular'",
+             place + " '" + folder.path("wide.tif") + "': 16x8 pixels");
+    }
+    std::string faces = "faces = [";
+    for (int i = 0; i < 5; ++i) faces += "'square.tif', ";
+    says("rotate_deg = 1\n" + faces + "'wide.tif']",
+         "/s.toml:4:1: environment: faces '" + folder.path("wide.tif") + "'");
+}
+
 TEST_CASE("sky: the sun stands where it is put, or where place and time say") {
     const SceneFolder folder;
     const std::string low = "[sky]\nsun_elevation_deg = 20\nsun_azimuth_deg = 90\n";

@@ -90,28 +90,109 @@ TEST_CASE("tile cache: a converted colour space and a misnamed file are read thr
     cache.load({aces, named}, TextureUse::color, tight(folder / "tx"));
     CHECK(cache->counts().cached == 2);
     check_equal(memory, cache);
-    // Without .tx files they stay in memory, and the broken limit is told.
+    // Without .tx files their finest levels are left out, and that is told.
     TextureOptions one_kib = tight("");
     one_kib.memory_bytes = 1024;
     without.load({aces, named}, TextureUse::color, one_kib);
     CHECK(without->counts().cached == 0);
-    REQUIRE(without.problems.warnings().size() == 1);
-    CHECK(without.problems.warnings()[0].find("--auto-tx") != std::string::npos);
-    check_equal(memory, without);
+    CHECK(without.problems.warnings().size() == 2);
 }
 
-TEST_CASE("tile cache: an untiled file without a .tx reads its finest level exactly") {
+TEST_CASE("texture memory: an untiled picture is halved until it fits, and its name is told") {
     const TempFolder folder;
-    write_tiff(folder / "a.tif", 150, 97, 3, 0, noise_bytes(150 * 97 * 3));
-    TestStore memory, cache;
-    memory.load(every_filter(folder / "a.tif"), TextureUse::color);
-    cache.load(every_filter(folder / "a.tif"), TextureUse::color, tight(""));
-    REQUIRE(cache->counts().cached == 1);
-    REQUIRE(cache.problems.notes().size() == 1);
-    CHECK(cache.problems.notes()[0].find("--auto-tx") != std::string::npos);
-    for (int t = 0; t < memory->size(); ++t)
-        for (float u = -0.7f; u < 2; u += 0.031f)
-            CHECK(memory->sample(t, u, 0.37f, 0, 9) == cache->sample(t, u, 0.37f, 0, 9));
+    const std::vector<std::string> files = {folder / "a.tif", folder / "b.tif", folder / "c.tif"};
+    write_tiff(files[0], 150, 97, 3, 0, noise_bytes(150 * 97 * 3));
+    write_tiff(files[1], 151, 98, 4, 2, noise_bytes(151 * 98 * 4));
+    std::vector<std::uint16_t> deep;
+    for (const std::uint8_t b : noise_bytes(30 * 30)) deep.push_back(std::uint16_t(b * 211));
+    write_tiff(files[2], 30, 30, 1, 0, deep);
+    TextureOptions options;
+    // a takes 63 000 bytes, b 84 000 and c 4000; at half the size 16 000 and 22 000.
+    options.memory_bytes = 100000;
+    std::vector<TextureDesc> descs;
+    for (const std::string& file : files)
+        for (const TextureDesc& desc : every_filter(file)) descs.push_back(desc);
+    for (const TextureUse use : {TextureUse::data, TextureUse::color}) {
+        TestStore whole, halved;
+        whole.load(descs, use);
+        halved.load(descs, use, options);
+        CHECK(halved->counts().cached == 0);
+        const auto told = halved.problems.warnings();
+        REQUIRE(told.size() == 1);
+        CHECK(told[0].find(
+                  files[1] +
+                  "': untiled, too slow for the tile cache; read as 75x49 in place of 151x98") !=
+              std::string::npos);
+        CHECK(told[0].find("--auto-tx") != std::string::npos);
+        CHECK(whole.problems.warnings().empty());
+        // What is left is what it was: the texels of level 1 by the trilinear filter, which comes
+        // first.
+        const int each = whole->size() / 3;
+        for (int x = 0; x < 75; ++x) {
+            const float u = (static_cast<float>(x) + 0.5f) / 75, v = 20.5f / 49;
+            const Texel a = whole->sample(each, u, v, 2.0f / 151);
+            const Texel b = halved->sample(each, u, v, 0);
+            for (std::size_t c = 0; c < 4; ++c)  // of the weights
+                CHECK(std::abs(a[c] - b[c]) <= 1e-5f);
+            // The footprint still chooses by the picture's own size: level 2, or 0.99 above 1.
+            const Texel wide_a = whole->sample(each, u, v, 4.0f / 151);
+            const Texel wide_b = halved->sample(each, u, v, 4.0f / 151);
+            for (std::size_t c = 0; c < 4; ++c) CHECK(std::abs(wide_a[c] - wide_b[c]) <= 0.02f);
+        }
+        int unequal = 0;
+        for (int t = 0; t < whole->size(); ++t)
+            for (float u = -0.73f; t / each != 1 && u < 2; u += 0.0971f)
+                unequal += whole->sample(t, u, 0.37f, 0, 5) != halved->sample(t, u, 0.37f, 0, 5);
+        CHECK(unequal == 0);
+        CHECK(whole->mean(each) == halved->mean(each));
+        CHECK(halved->memory_bytes() <= options.memory_bytes);
+    }
+}
+
+TEST_CASE("texture memory: no limit is too small for what cannot be in the cache") {
+    const TempFolder folder;
+    std::vector<TextureDesc> descs;
+    for (int i = 0; i < 3; ++i) {
+        const std::string path = folder / (std::to_string(i) + ".tif");
+        write_tiff(path, 50 + i, 9, 1, 0, noise_bytes(static_cast<std::size_t>(50 + i) * 9));
+        descs.push_back(texture_of(path));
+    }
+    TestStore memory, least;
+    memory.load(descs);
+    least.load(descs, TextureUse::data, tight(""));
+    CHECK(least.problems.warnings().size() == 3);
+    CHECK(least.problems.warnings()[2].find("read as 1x1 in place of 52x9") != std::string::npos);
+    for (int t = 0; t < 3; ++t)  // a byte's rounding
+        CHECK(least->sample(t, 0.3f, 0.6f, 0)[0] ==
+              doctest::Approx(memory->mean(t)[0]).epsilon(1.0 / 128));
+}
+
+TEST_CASE("auto-tx: where everything fits it changes nothing, whatever the size") {
+    const TempFolder folder;
+    // Just over kInCoreBytes.
+    constexpr int kSize = 8200;
+    std::vector<std::uint8_t> values(std::size_t(kSize) * kSize);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = static_cast<std::uint8_t>(i % 251 ^ i / kSize % 241);
+    write_tiff(folder / "big.tif", kSize, kSize, 1, 0, values);
+    TextureOptions options = tight(folder / "tx");
+    options.memory_bytes = 128 << 20;
+    const std::vector<TextureDesc> desc{texture_of(folder / "big.tif")};
+    TestStore without, with, tiled;
+    without.load(desc, TextureUse::color);
+    with.load(desc, TextureUse::color, options);
+    CHECK_FALSE(fs::exists(folder / "tx"));
+    check_equal(without, with);
+    options.memory_bytes = 64 << 20;
+    tiled.load(desc, TextureUse::color, options);
+    CHECK(tiled->counts().cached == 1);
+    check_equal(without, tiled);
+    // What is tiled is read as a whole by nobody.
+    const std::string tx = fs::directory_iterator(folder / "tx")->path().string();
+    TestStore large;
+    large.load({texture_of(tx)});
+    CHECK(large->counts().cached == 1);
+    CHECK(large->memory_bytes() < 1 << 20);
 }
 
 TEST_CASE("auto-tx: files are made once, and anew for a file that changed") {
@@ -150,32 +231,44 @@ TEST_CASE("auto-tx: files are made once, and anew for a file that changed") {
     CHECK(files().size() == 3);
 }
 
-TEST_CASE("auto-tx: a folder that cannot be made is a warning, and the file itself is read") {
+TEST_CASE("auto-tx: a folder that cannot be made is a warning, and memory takes what it can") {
     const TempFolder folder;
     write_tiff(folder / "a.tif", 40, 40, 1, 0, noise_bytes(1600));
     std::ofstream(folder / "tx") << "in the way";
     TestStore memory, cache;
-    memory.load({texture_of(folder / "a.tif", TextureFilter::closest)});
-    cache.load({texture_of(folder / "a.tif", TextureFilter::closest)}, TextureUse::data,
-               tight(folder / "tx"));
-    REQUIRE(cache.problems.warnings().size() == 1);
+    TextureOptions options = tight("");
+    options.memory_bytes = 1200;
+    memory.load({texture_of(folder / "a.tif")}, TextureUse::data, options);
+    options = tight(folder / "tx");
+    options.memory_bytes = 1200;
+    cache.load({texture_of(folder / "a.tif")}, TextureUse::data, options);
+    REQUIRE(cache.problems.warnings().size() == 2);
     CHECK(cache.problems.warnings()[0].find("no .tx") != std::string::npos);
-    CHECK(cache->counts().cached == 1);
+    CHECK(cache.problems.warnings()[1].find("read as 20x20") != std::string::npos);
+    CHECK(cache->counts().in_core == 1);
     check_equal(memory, cache);
 }
 
 TEST_CASE("auto-tx: a .tx that is damaged is a warning, and the file itself is read") {
     const TempFolder folder;
-    const std::string tx = folder / "tx";
     write_tiff(folder / "a.tif", 40, 40, 1, 0, noise_bytes(1600));
+    write_tiff(folder / "b.tif", 24, 24, 1, 0, noise_bytes(576));
+    const std::vector<TextureDesc> descs{texture_of(folder / "a.tif"),
+                                         texture_of(folder / "b.tif")};
+    TextureOptions options = tight(folder / "tx");
+    options.memory_bytes = 2600;  // either of them, not both
     TestStore memory, first, second;
-    memory.load({texture_of(folder / "a.tif", TextureFilter::closest)});
-    first.load({texture_of(folder / "a.tif", TextureFilter::closest)}, TextureUse::data, tight(tx));
-    for (const auto& entry : fs::directory_iterator(tx)) fs::resize_file(entry.path(), 10);
-    second.load({texture_of(folder / "a.tif", TextureFilter::closest)}, TextureUse::data,
-                tight(tx));
-    CHECK(second.problems.warnings().size() == 1);
-    check_equal(memory, second);
+    memory.load(descs);
+    first.load(descs, TextureUse::data, options);
+    REQUIRE(first->counts().cached > 0);
+    for (const auto& entry : fs::directory_iterator(folder / "tx"))
+        if (entry.path().filename().string().starts_with("a.")) fs::resize_file(entry.path(), 10);
+    second.load(descs, TextureUse::data, options);
+    CHECK(second.problems.warnings().size() >= 1);
+    CHECK(second.problems.warnings()[0].find("no .tx") != std::string::npos);
+    CHECK(second->counts().in_core >= 1);
+    for (float u = 0; u < 1; u += 0.1f)
+        CHECK(memory->sample(1, u, 0.3f, 0) == second->sample(1, u, 0.3f, 0));
 }
 
 TEST_CASE("auto-tx: a picture that is broken is reported once and makes no file") {
@@ -220,13 +313,21 @@ TEST_CASE("texture memory: what stays in memory is decided by sizes and order, n
     }
     TextureOptions options;
     options.memory_bytes = 200000;  // all are 265 000 bytes, a half of this takes the smallest four
+    options.auto_tx = true;
+    options.tx_folder = folder / "tx";
     Workers workers(2);
     TestStore one, many;
     one.load(descs, TextureUse::color, options);
     many.load(descs, TextureUse::color, options, &workers);
     CHECK(one->counts().in_core == 4);
     CHECK(one->counts().cached == 4);
-    CHECK(one.problems.notes() == many.problems.notes());
+    CHECK(many->counts().cached == 4);
+    TestStore halved, halved_too;
+    options.auto_tx = false;
+    halved.load(descs, TextureUse::color, options);
+    halved_too.load(descs, TextureUse::color, options, &workers);
+    CHECK(halved.problems.warnings().size() == 3);
+    CHECK(halved.problems.warnings() == halved_too.problems.warnings());
     for (int t = 0; t < 8; ++t)
         for (const float u : {0.1f, 0.43f, 0.77f})
             CHECK(one->sample(t, u, 0.3f, 0.1f) == many->sample(t, u, 0.3f, 0.1f));
@@ -245,7 +346,9 @@ TEST_CASE("texture memory: everything stays in memory while it fits") {
     options.memory_bytes -= 1;
     over.load({texture_of(folder / "a.tif"), texture_of(folder / "b.tif")}, TextureUse::data,
               options);
-    CHECK(over->counts().cached > 0);
+    REQUIRE(over.problems.warnings().size() == 1);  // the first of the largest
+    CHECK(over.problems.warnings()[0].find("a.tif") != std::string::npos);
+    CHECK(over->memory_bytes() < options.memory_bytes);
 }
 
 TEST_CASE("texture memory: the limit holds while four times as much is read") {

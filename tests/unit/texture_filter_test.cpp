@@ -7,6 +7,7 @@
 #include <limits>
 #include <set>
 
+#include "renderer/image/tx_file.h"
 #include "tests/support/temp_folder.h"
 #include "tests/support/texture_stores.h"
 
@@ -210,7 +211,17 @@ TEST_CASE("texture: texels that are no number read as 0 and are counted") {
         }
     CHECK(s->sample(1, 0.1f, 0.5f, 0)[0] == 0);
     CHECK(s->sample(1, 0.4f, 0.5f, 0)[0] == 2);
-    // Out of the tile cache too, where nothing is looked at beforehand.
+    // Out of the tile cache too, where nothing is looked at beforehand: the same texels as halves.
+    Pyramid tiled;
+    tiled.type = TexelType::half;
+    tiled.channels = 1;
+    tiled.levels = {{0, 4, 1}, {64, 2, 1}, {128, 1, 1}};
+    tiled.words.assign(192, 0x4000);
+    tiled.words[0] = 0x7e00;
+    tiled.words[2] = 0xfc00;
+    tiled.words[3] = 0x7c00;
+    write_tx(tiled, folder / "nan.tx");
+    for (TextureDesc& desc : descs) desc.file = folder / "nan.tx";
     TestStore cached;
     TextureOptions tight;
     tight.memory_bytes = 1;

@@ -349,26 +349,3 @@ TEST_CASE("texture: loading by many threads gives the same values and messages")
         CHECK(one.store->sample(t, 0.33f, 0.71f, 0.2f) ==
               many.store->sample(t, 0.33f, 0.71f, 0.2f));
 }
-
-TEST_CASE("texture: a picture over the in-core size reads the same through the tile cache") {
-    const TempFolder folder;
-    // One byte a texel: 8200 x 8200 is just over 64 MiB. Smooth, so that the filters agree.
-    constexpr int kSize = 8200;
-    Bytes values(std::size_t(kSize) * kSize);
-    for (std::size_t i = 0; i < values.size(); ++i)
-        values[i] = static_cast<std::uint8_t>(i % kSize * 128 / kSize + i / kSize * 100 / kSize);
-    write_tiff(folder / "big.tif", kSize, kSize, 1, 0, values);
-    Fixture f;
-    f.load({from_file(folder / "big.tif", Wrap::clamp)}, TextureUse::color);
-    REQUIRE(f.problems.notes().size() == 1);
-    CHECK(f.problems.notes()[0].find("--auto-tx") != std::string::npos);
-    CHECK(f.store->memory_bytes() < 64 << 20);
-    for (const auto& [u, v] : {std::pair{0.2f, 0.9f}, {0.7f, 0.4f}, {0.95f, 0.05f}}) {
-        const float code = (u * 128 + (1 - v) * 100) / 255;
-        const Texel texel = f.store->sample(0, u, v, 0);
-        // Codes are rounded down: between the value and one code of each gradient less.
-        CHECK(texel[0] <= srgb_to_linear(code));
-        CHECK(texel[0] >= srgb_to_linear(code - 2.1f / 255));
-        CHECK(texel[3] == 1);
-    }
-}
