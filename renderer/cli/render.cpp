@@ -18,6 +18,7 @@
 #include "renderer/cli/signals.h"
 #include "renderer/cli/tev_display.h"
 #include "renderer/core/log.h"
+#include "renderer/film/pass_docs.h"
 #include "renderer/image/atomic_file.h"
 #include "renderer/image/colour_space.h"
 #include "renderer/scene/scene.h"
@@ -225,6 +226,14 @@ void add_render(CLI::App& app, CommandLine& line) {
     sub->add_option("--display", o->display,
                     "HOST:PORT of a tev viewer that shows the picture as it grows")
         ->check(named);
+    sub->add_flag_callback(
+           "--list-aovs",
+           [] {
+               print_out(list_of_passes());
+               throw CLI::Success();
+           },
+           "List the passes that --aov takes")
+        ->trigger_on_parse();
     sub->add_flag("--float", o->all_float, "All channels as 32-bit float");
     sub->add_flag("--no-progress", o->no_progress, "No progress on stderr");
     sub->add_flag("-v,--verbose", o->verbose, "Say more");
@@ -233,7 +242,8 @@ void add_render(CLI::App& app, CommandLine& line) {
         "Examples:\n"
         "  tessera render bunny.obj -o bunny.exr\n"
         "  tessera render scene.toml -o out.exr --time 60 --preview out.png\n"
-        "  tessera render scene.toml -o crop.exr --crop 100,100,200,200 --aov Z --aov N");
+        "  tessera render scene.toml -o crop.exr --crop 100,100,200,200 --aov Z --aov N\n"
+        "  tessera render scene.toml -o comp.exr --aov compositing --aov light_groups");
     sub->callback([o, &line] {
         line.run = [o, &line] {
             // With a time to fill and no count asked for, the time alone decides.

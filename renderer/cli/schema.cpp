@@ -5,6 +5,7 @@
 
 #include "renderer/cli/commands.h"
 #include "renderer/cli/console.h"
+#include "renderer/film/pass_docs.h"
 #include "renderer/io/node_docs.h"
 
 namespace tessera {
@@ -15,9 +16,13 @@ void add_schema(CLI::App& app, CommandLine& line) {
     sub->group("");  // for those who change the format: not in the help
     const auto nodes = std::make_shared<bool>(false);
     sub->add_flag("--nodes", *nodes, "The list of nodes in its place (docs/nodes.md)");
-    sub->callback([&line, nodes] {
-        line.run = [nodes] {
-            print_out(*nodes ? nodes_markdown() : scene_schema_json());
+    const auto passes = std::make_shared<bool>(false);
+    sub->add_flag("--passes", *passes, "The tables of passes (docs/passes.md)");
+    sub->callback([&line, nodes, passes] {
+        line.run = [nodes, passes] {
+            print_out(*passes  ? passes_markdown()
+                      : *nodes ? nodes_markdown()
+                               : scene_schema_json());
             return 0;
         };
     });

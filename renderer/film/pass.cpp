@@ -32,6 +32,10 @@ constexpr PassInfo albedo(std::string_view name, std::uint32_t events, std::stri
     return {name, "RGB", S::event_albedo, kColor, {}, events, meaning};
 }
 
+constexpr std::string_view kStraight =
+    "of it, straight from lamps, glowing surfaces and surroundings";
+constexpr std::string_view kByOthers = "of it, by way of other surfaces";
+
 constexpr PassInfo kReady[] = {
     data("Z", "Z", S::z, "depth along the camera's axis, of the nearest sample; 1e10: nothing"),
     data("depth", "Z", S::depth, "the same depth, filtered: the mean over the samples that hit"),
@@ -49,26 +53,26 @@ constexpr PassInfo kReady[] = {
     light("emission", "C[LO]", "lamps and glowing surfaces as the camera sees them"),
     light("background", "CB", "the surroundings as the camera sees them"),
     light("diffuse", "C'diffuse'.*[LOB]", "diffuse reflection, direct and indirect"),
-    light("diffuse_direct", "C'diffuse'[LOB]", ""),
-    light("diffuse_indirect", "C'diffuse'.+[LOB]", ""),
+    light("diffuse_direct", "C'diffuse'[LOB]", kStraight),
+    light("diffuse_indirect", "C'diffuse'.+[LOB]", kByOthers),
     light("specular", "C'specular'.*[LOB]", "metal and dielectric reflection, rough and smooth"),
-    light("specular_direct", "C'specular'[LOB]", ""),
-    light("specular_indirect", "C'specular'.+[LOB]", ""),
+    light("specular_direct", "C'specular'[LOB]", kStraight),
+    light("specular_indirect", "C'specular'.+[LOB]", kByOthers),
     light("coat", "C'coat'.*[LOB]", "reflection of the coat"),
-    light("coat_direct", "C'coat'[LOB]", ""),
-    light("coat_indirect", "C'coat'.+[LOB]", ""),
+    light("coat_direct", "C'coat'[LOB]", kStraight),
+    light("coat_indirect", "C'coat'.+[LOB]", kByOthers),
     light("transmission", "C'transmission'.*[LOB]", "light through glass and thin sheets"),
-    light("transmission_direct", "C'transmission'[LOB]", ""),
-    light("transmission_indirect", "C'transmission'.+[LOB]", ""),
+    light("transmission_direct", "C'transmission'[LOB]", kStraight),
+    light("transmission_indirect", "C'transmission'.+[LOB]", kByOthers),
     light("sss", "C'sss'.*[LOB]", "subsurface: in, scattered about, and out again"),
-    light("sss_direct", "C'sss'[LOB]", ""),
-    light("sss_indirect", "C'sss'.+[LOB]", ""),
+    light("sss_direct", "C'sss'[LOB]", kStraight),
+    light("sss_indirect", "C'sss'.+[LOB]", kByOthers),
     light("sheen", "C'sheen'.*[LOB]", "fuzz"),
-    light("sheen_direct", "C'sheen'[LOB]", ""),
-    light("sheen_indirect", "C'sheen'.+[LOB]", ""),
+    light("sheen_direct", "C'sheen'[LOB]", kStraight),
+    light("sheen_indirect", "C'sheen'.+[LOB]", kByOthers),
     light("volume", "C'volume'.*[LOB]", "scattering in what the camera is inside of"),
-    light("volume_direct", "C'volume'[LOB]", ""),
-    light("volume_indirect", "C'volume'.+[LOB]", ""),
+    light("volume_direct", "C'volume'[LOB]", kStraight),
+    light("volume_indirect", "C'volume'.+[LOB]", kByOthers),
 
     {"albedo",
      "RGB",
@@ -78,13 +82,14 @@ constexpr PassInfo kReady[] = {
      0,
      "white light that the surface reflects, at most 1; behind mirrors and clear glass that of "
      "what is seen there"},
-    albedo("diffuse_albedo", bits({E::diffuse}), "of the first surface, as the next ones are"),
-    albedo("specular_albedo", bits({E::specular, E::mirror}), ""),
-    albedo("coat_albedo", bits({E::coat, E::coat_mirror}), ""),
+    albedo("diffuse_albedo", bits({E::diffuse}), "of the first surface, diffuse lobes alone"),
+    albedo("specular_albedo", bits({E::specular, E::mirror}),
+           "its metal and dielectric reflection"),
+    albedo("coat_albedo", bits({E::coat, E::coat_mirror}), "its coat"),
     albedo("transmission_albedo", bits({E::transmission, E::clear_transmission}),
            "of glass its reflection included"),
-    albedo("sss_albedo", bits({E::sss}), ""),
-    albedo("sheen_albedo", bits({E::sheen}), ""),
+    albedo("sss_albedo", bits({E::sss}), "its subsurface"),
+    albedo("sheen_albedo", bits({E::sheen}), "its fuzz"),
 
     {"shadow",
      "RGB",

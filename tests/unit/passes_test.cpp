@@ -2,11 +2,14 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <fstream>
 #include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "renderer/film/pass.h"
+#include "renderer/film/pass_docs.h"
 #include "tests/support/map_files.h"
 #include "tests/support/scene_folder.h"
 #include "tests/support/test_scenes.h"
@@ -294,4 +297,11 @@ TEST_CASE("passes: names that are none are refused with the nearest") {
     CHECK(choose_passes({}, {"default"}, {}).size() == 4);
     CHECK(choose_passes({"beauty"}, {"default"}, {}).empty());
     CHECK(choose_passes({"light_groups"}, {"default", "key"}, {}).size() == 2);
+}
+
+TEST_CASE("passes: docs/passes.md holds the tables that --passes prints") {
+    std::ifstream file(std::string(TESSERA_SOURCE_DIR) + "/docs/passes.md");
+    std::stringstream text;
+    text << file.rdbuf();
+    CHECK(text.str().find(passes_markdown()) != std::string::npos);
 }
