@@ -147,14 +147,13 @@ MaterialDesc remapped(MaterialDesc desc, std::span<const int> to) {
     return desc;
 }
 
-void collect_textures(const MaterialDesc& desc, std::vector<TextureUse>& use,
-                      std::vector<bool>& read, bool displaced) {
+std::vector<TextureRead> textures_of(const MaterialDesc& desc, bool displaced) {
+    std::vector<TextureRead> reads;
     const MaterialDesc kept = folded(desc, displaced);
     visit_textures(kept, [&](int texture, TextureUse as) {
-        if (texture < 0) return;
-        if (!read[texture]) use[texture] = as;
-        read[texture] = true;
+        if (texture >= 0) reads.push_back({texture, as});
     });
+    return reads;
 }
 
 ShaderProgram::ShaderProgram(const MaterialDesc& desc) : m_(folded(desc)) {

@@ -131,8 +131,12 @@ private:
 /// reads it).
 MaterialDesc remapped(MaterialDesc desc, std::span<const int> to);
 
-/// Which textures a material reads, and as what. displaced: its displacement is asked for too.
-void collect_textures(const MaterialDesc& desc, std::vector<TextureUse>& use,
-                      std::vector<bool>& read, bool displaced = false);
+struct TextureRead {
+    int texture;
+    TextureUse as;
+};
+/// Which textures a material reads, some of them twice. displaced: its displacement is asked for
+/// too.
+std::vector<TextureRead> textures_of(const MaterialDesc& desc, bool displaced = false);
 
 }  // namespace tessera

@@ -88,8 +88,9 @@ struct TextureStore::Impl {
     std::map<const TextureSource*, bool> tx;  // that there are: whether they were made now
 
     void list(const std::vector<TextureRequest>& requests);
-    std::size_t add_source(const std::string& file, const std::string& space, const SourceLoc& loc);
-    int add_set(const TextureDesc& desc, const std::string& space);
+    std::size_t add_source(const std::string& file, const std::string& space,
+                           const TextureRequest& request);
+    int add_set(const TextureRequest& request, const std::string& space);
     template <class Step>
     void for_each(Workers* workers, const Step& step);
     void place(const TextureOptions& options, const ColorSpaces& colors, Problems& problems);
@@ -112,18 +113,22 @@ struct TextureStore::Impl {
 };
 
 std::size_t TextureStore::Impl::add_source(const std::string& file, const std::string& space,
-                                           const SourceLoc& loc) {
+                                           const TextureRequest& request) {
     const auto [it, added] = known.try_emplace({file, space}, sources.size());
     if (added) {
         TextureSource& s = sources.emplace_back();
         s.file = file;
         s.color_space = space;
-        s.loc = loc;
+        s.loc = request.desc->loc;
     }
+    std::vector<std::string>& users = sources[it->second].users;
+    for (const std::string& user : request.users)
+        if (std::find(users.begin(), users.end(), user) == users.end()) users.push_back(user);
     return it->second;
 }
 
-int TextureStore::Impl::add_set(const TextureDesc& desc, const std::string& space) {
+int TextureStore::Impl::add_set(const TextureRequest& request, const std::string& space) {
+    const TextureDesc& desc = *request.desc;
     TileSet& set = sets.emplace_back();
     set.pattern = desc.file;
     set.loc = desc.loc;
@@ -136,7 +141,7 @@ int TextureStore::Impl::add_set(const TextureDesc& desc, const std::string& spac
     for (const TextureTile& t : desc.tiles)
         set.source[static_cast<std::size_t>(t.row) * static_cast<std::size_t>(set.columns) +
                    static_cast<std::size_t>(t.column)] =
-            static_cast<int>(add_source(t.file, space, desc.loc));
+            static_cast<int>(add_source(t.file, space, request));
     return static_cast<int>(sets.size()) - 1;
 }
 
@@ -156,10 +161,10 @@ void TextureStore::Impl::list(const std::vector<TextureRequest>& requests) {
                 finite_or(d.gain, 1),
                 finite_or(d.bias, 0)};
         if (d.tiles.empty()) {
-            use.source = add_source(d.file, space, d.loc);
+            use.source = add_source(d.file, space, request);
         } else {
-            use.set = add_set(d, space);
-            use.source = add_source(d.tiles[0].file, space, d.loc);
+            use.set = add_set(request, space);
+            use.source = add_source(d.tiles[0].file, space, request);
             use.wrap_u = use.wrap_v = Wrap::clamp;  // a tile knows nothing of its neighbours
         }
         uses.push_back(use);

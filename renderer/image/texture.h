@@ -25,6 +25,7 @@ enum class TextureUse : std::uint8_t { color, data };
 struct TextureRequest {
     const TextureDesc* desc = nullptr;
     TextureUse use = TextureUse::color;
+    std::vector<std::string> users = {};  // whom to name when the file cannot be read
 };
 
 struct TextureOptions {

@@ -13,6 +13,8 @@
 namespace tessera {
 namespace {
 
+constexpr std::size_t kNamedUsers = 4;
+
 /// The library picks its reader by extension, so only a name that tells the truth may go there.
 bool extension_agrees(const std::string& path, ImageFormat format) {
     std::string e = std::filesystem::path(path).extension().string();
@@ -126,10 +128,18 @@ void or_magenta(TextureSource& s, const ByteTables& tables, const Step& step) no
 std::string named(const TextureSource& s) { return "texture '" + s.file + "': "; }
 
 void become_magenta(TextureSource& s, const ByteTables& tables, const Error& why) {
+    // The place is that of one of them.
+    std::string users;
+    for (std::size_t i = 0; s.users.size() > 1 && i < s.users.size(); ++i) {
+        if (i > kNamedUsers) continue;
+        users += i == 0 ? " (of materials " : i + 1 == s.users.size() ? " and " : ", ";
+        users += i == kNamedUsers ? "others" : "'" + s.users[i] + "'";
+    }
+    const std::string text = why.what() + users + (users.empty() ? "" : ")");
     if (claims_to_be_image(s.file))
-        s.damages.emplace_back(why.what());
+        s.damages.push_back(text);
     else
-        s.warnings.push_back(std::string(why.what()) + "; magenta in its place");
+        s.warnings.push_back(text + "; magenta in its place");
     s.pyramid = constant_pyramid({255, 0, 255}, tables);
     s.in_core = s.magenta = true;
     s.alpha = false;

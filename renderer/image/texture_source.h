@@ -15,6 +15,7 @@ struct TextureSource {
     std::string file;
     std::string color_space;  // "" until survey() decides by the kind of file
     SourceLoc loc;
+    std::vector<std::string> users;  // of all its requests
 
     // Told by the header.
     int width = 1, height = 1;

@@ -87,16 +87,24 @@ private:
         const std::size_t n = desc_.textures.size();
         std::vector<TextureUse> use(n, TextureUse::color);
         std::vector<bool> read(n, false);
+        std::vector<std::vector<std::string>> users(n);
         const std::vector<bool> displaced = displaced_materials(desc_, instances_, problems_);
         for (std::size_t i = 0; i < desc_.materials.size(); ++i) {
-            if (used_[i]) collect_textures(desc_.materials[i], use, read, displaced[i]);
+            if (!used_[i]) continue;
+            const MaterialDesc& m = desc_.materials[i];
+            for (const auto [texture, as] : textures_of(m, displaced[i])) {
+                if (!read[texture]) use[texture] = as;
+                read[texture] = true;
+                std::vector<std::string>& names = users[texture];
+                if (names.empty() || names.back() != m.name) names.push_back(m.name);
+            }
         }
         std::vector<TextureRequest> requests;
         std::vector<int> remap(n, -1);
         for (std::size_t i = 0; i < n; ++i) {
             if (!read[i]) continue;
             remap[i] = static_cast<int>(requests.size());
-            requests.push_back({&desc_.textures[i], use[i]});
+            requests.push_back({&desc_.textures[i], use[i], std::move(users[i])});
         }
         if (!requests.empty()) {
             colors();

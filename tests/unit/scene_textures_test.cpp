@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "renderer/scene/scene.h"
 #include "tests/support/scene_folder.h"
 #include "tests/support/tiff.h"
 
@@ -21,6 +22,25 @@ std::string sphere_with(const std::string& color) {
 std::string stem(const std::string& path) { return path.substr(path.rfind('/') + 1); }
 
 }  // namespace
+
+TEST_CASE("textures: a map that is missing is told with all materials that use it") {
+    const SceneFolder folder;
+    folder.write("t.obj", kTriangle);
+    std::string text;
+    for (const std::string name : {"oak", "ash", "elm"})
+        text += "[[mesh]]\nfile = 't.obj'\nmaterial = '" + name + "'\n[material." + name +
+                "]\nbase_color = { file = 'gone.png' }\n";
+    const auto warnings = [&](const std::string& scene) {
+        return build_scene(folder.load(scene))->statistics().warnings;
+    };
+    const auto all = warnings(text);
+    CHECK(contains(all, "gone.png"));
+    CHECK(contains(all, "(of materials 'ash', 'elm' and 'oak'); magenta in its place"));
+    // Only of one: its place says which.
+    const auto one = warnings(text.substr(0, text.find("[[mesh]]", 1)));
+    CHECK(contains(one, "gone.png"));
+    CHECK_FALSE(contains(one, "of materials"));
+}
 
 TEST_CASE("scene textures: filter is read for inputs, normal maps and image nodes") {
     const SceneFolder folder;
