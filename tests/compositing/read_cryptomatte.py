@@ -3,7 +3,7 @@
 
 read_cryptomatte.py FILE                            lists the types and the names of each
 read_cryptomatte.py FILE TYPE NAME -o MATTE.pfm     writes the coverage of a name, as floats
-read_cryptomatte.py FILE --check                    every coverage must be in the manifest, sum to at most 1 and to A
+read_cryptomatte.py FILE --check                    every id must be in the manifest, coverages sum to A and to at most 1
 """
 
 import argparse
@@ -141,6 +141,8 @@ def check(file, matte, tolerance):
     worst = (0, None)
     for i, opacity in enumerate(alpha):
         total = sum(m[i] for m in mattes.values())
+        if total < opacity and matte.ranks[-1][1][i] > 0:
+            continue  # all ranks are taken, what came after them is not in the file
         if total > 1:
             problems.append(f"{matte.name}: coverages of pixel {i} sum to {total}")
         # A half float alpha has 11 bits.
