@@ -42,7 +42,7 @@ public:
         choose_passes();
         place_origin();
         if (any_subdivided(desc_, instances_)) subdivide();
-        if (wants_name_ids(desc_.film)) names_.emplace(desc_);
+        if (wants_name_ids(scene_->passes_)) names_.emplace(desc_);
         place_shapes();
         make_lights();
         if (desc_.camera.projection != Projection::perspective && desc_.camera.aperture_radius > 0)

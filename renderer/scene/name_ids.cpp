@@ -4,9 +4,19 @@
 
 namespace tessera {
 
-bool wants_name_ids(const FilmDesc& film) {
-    return std::any_of(film.aovs.begin(), film.aovs.end(),
-                       [](const std::string& pass) { return pass.starts_with("Crypto"); });
+bool wants_name_ids(const Passes& passes) {
+    return std::any_of(passes.begin(), passes.end(), [](const Pass& pass) {
+        switch (pass.source) {
+            case PassSource::object_id:
+            case PassSource::material_id:
+            case PassSource::crypto_object:
+            case PassSource::crypto_material:
+            case PassSource::crypto_asset:
+                return true;
+            default:
+                return false;
+        }
+    });
 }
 
 std::size_t NameIds::bytes() const noexcept {

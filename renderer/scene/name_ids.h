@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "renderer/api/scene_desc.h"
 #include "renderer/core/surface_point.h"
+#include "renderer/film/pass.h"
 #include "renderer/geometry/shapes.h"
 
 namespace tessera {
@@ -27,8 +27,8 @@ struct NameList {
 /// Per kind: an index into NameList::ids. The larger the surface of a name, the smaller its key.
 using NameKeys = std::array<std::uint32_t, kNameKinds>;
 
-/// Whether a pass of the film asks for names.
-bool wants_name_ids(const FilmDesc& film);
+/// Whether a pass asks for names.
+bool wants_name_ids(const Passes& passes);
 
 class NameIds {
 public:
