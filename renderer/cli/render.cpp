@@ -12,6 +12,7 @@
 
 #include "renderer/cli/commands.h"
 #include "renderer/cli/console.h"
+#include "renderer/cli/manifest_files.h"
 #include "renderer/cli/output_check.h"
 #include "renderer/cli/progress.h"
 #include "renderer/cli/scene_options.h"
@@ -28,7 +29,7 @@ namespace {
 
 struct RenderOptions {
     SceneOptions scene;
-    std::string output, preview, view, stats, display;
+    std::string output, preview, view, stats, display, crypto_manifest = "embedded";
     double time_s = 0;
     bool all_float = false, no_progress = false, quiet = false;
     int verbose = 0;
@@ -184,6 +185,8 @@ int run_render(RenderOptions options, const std::string& command) {
 
     const auto start = std::chrono::steady_clock::now();
     describe_in_header(result.image, *scene, s, command);
+    if (options.crypto_manifest == "sidecar")
+        write_manifests(move_manifests(result.image.metadata, options.output));
     const WriteReport written = write_exr(result.image, options.output, {options.all_float});
     if (!options.preview.empty()) write_preview(result.image, options.preview, options.view);
     s.write_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -235,6 +238,9 @@ void add_render(CLI::App& app, CommandLine& line) {
            "List the passes that --aov takes")
         ->trigger_on_parse();
     sub->add_flag("--float", o->all_float, "All channels as 32-bit float");
+    sub->add_option("--crypto-manifest", o->crypto_manifest,
+                    "Cryptomatte's names in the header or in files beside it: embedded, sidecar")
+        ->check(CLI::IsMember({"embedded", "sidecar"}));
     sub->add_flag("--no-progress", o->no_progress, "No progress on stderr");
     sub->add_flag("-v,--verbose", o->verbose, "Say more");
     sub->add_flag("-q,--quiet", o->quiet, "Say nothing but errors");

@@ -7,7 +7,7 @@ namespace tessera {
 namespace {
 
 // How a pass's samples become its pixel.
-enum class How { sums, nearest, counts };
+enum class How { sums, nearest, counts, coverage };
 
 How how(PassSource s) {
     switch (s) {
@@ -19,6 +19,10 @@ How how(PassSource s) {
         case PassSource::object_id:
         case PassSource::material_id:
             return How::nearest;
+        case PassSource::crypto_object:
+        case PassSource::crypto_material:
+        case PassSource::crypto_asset:
+            return How::coverage;
         case PassSource::sample_count:
             return How::counts;
         default:
@@ -73,6 +77,7 @@ Film::Film(const PixelWindow& window, Passes passes)
         const Pass& pass = passes_[p];
         if (how(pass.source) == How::sums) planes_[p].sums.resize(n * sums_of(pass));
         if (how(pass.source) == How::nearest) planes_[p].nearest.resize(n * pass.channels.size());
+        if (how(pass.source) == How::coverage) planes_[p].coverage.emplace(n);
         light_passes_ += pass.source == PassSource::light_paths;
         event_albedos_ |= pass.source == PassSource::event_albedo;
     }
@@ -109,6 +114,9 @@ void Film::add_passes(std::size_t i, std::uint32_t index, const PathSample& s,
         const Pass& pass = passes_[p];
         Sum* const sums = planes_[p].sums.data() + i * sums_of(pass);
         float* const value = planes_[p].nearest.data() + i * pass.channels.size();
+        const auto count = [&](std::uint32_t number) {
+            if (number > 0) planes_[p].coverage->add(i, number - 1);
+        };
         const auto put = [&](Vec3f v) {
             if (nearer) value[0] = v.x, value[1] = v.y, value[2] = v.z;
         };
@@ -168,6 +176,15 @@ void Film::add_passes(std::size_t i, std::uint32_t index, const PathSample& s,
             case PassSource::material_id:
                 if (nearer) *value = static_cast<float>(f.material);
                 break;
+            case PassSource::crypto_object:
+                count(f.object);
+                break;
+            case PassSource::crypto_material:
+                count(f.material);
+                break;
+            case PassSource::crypto_asset:
+                count(f.asset);
+                break;
             case PassSource::seconds:
                 sums->add(static_cast<double>(passes.seconds[lane]));
                 break;
@@ -201,6 +218,7 @@ void Film::merge(const Film& other) {
                 const std::size_t sums = plane.sums.empty() ? 0 : sums_of(passes_[p]);
                 for (std::size_t c = 0; c < sums; ++c)
                     plane.sums[to * sums + c].add(add.sums[from * sums + c]);
+                if (plane.coverage) plane.coverage->merge(to, *add.coverage, from);
                 const std::size_t values = plane.nearest.empty() ? 0 : passes_[p].channels.size();
                 for (std::size_t c = 0; nearer && c < values; ++c)
                     plane.nearest[to * values + c] = add.nearest[from * values + c];
@@ -225,6 +243,7 @@ std::vector<Layer> Film::layers(const PixelWindow& part) const {
     }
     out.push_back(std::move(beauty));
     for (std::size_t p = 0; p < passes_.size(); ++p) {
+        if (planes_[p].coverage) continue;
         const std::size_t channels = passes_[p].channels.size();
         Layer layer{passes_[p].name, passes_[p].channels, passes_[p].kind,
                     std::vector<float>(pixels.size() * channels)};
@@ -232,6 +251,13 @@ std::vector<Layer> Film::layers(const PixelWindow& part) const {
             put_pixel(passes_[p], planes_[p], pixels[i], &layer.pixels[i * channels]);
         out.push_back(std::move(layer));
     }
+    return out;
+}
+
+std::vector<std::uint32_t> Film::sample_counts() const {
+    std::vector<std::uint32_t> out;
+    out.reserve(beauty_.size());
+    for (const Beauty& b : beauty_) out.push_back(b.samples);
     return out;
 }
 
@@ -284,7 +310,10 @@ void Film::put_pixel(const Pass& pass, const Plane& plane, std::size_t i, float*
 
 std::size_t Film::bytes() const noexcept {
     std::size_t sum = capacity_bytes(beauty_) + capacity_bytes(nearest_);
-    for (const Plane& p : planes_) sum += capacity_bytes(p.sums) + capacity_bytes(p.nearest);
+    for (const Plane& p : planes_) {
+        sum += capacity_bytes(p.sums) + capacity_bytes(p.nearest);
+        if (p.coverage) sum += p.coverage->bytes();
+    }
     return sum;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "renderer/core/ray.h"
 #include "renderer/core/sum.h"
 #include "renderer/core/vec.h"
+#include "renderer/film/id_coverage.h"
 #include "renderer/film/pass.h"
 
 namespace tessera {
@@ -32,8 +34,8 @@ struct FirstHit {
     Vec3f n, ng;    // facing the camera
     Vec2f uv;
     float facing = 0;
-    float ao = 1;                           // 1: open
-    std::int32_t object = 0, material = 0;  // numbers from 1; 0: none
+    float ao = 1;                                       // 1: open
+    std::uint32_t object = 0, material = 0, asset = 0;  // keys of names, plus 1; 0: none
     Color albedo{0.0f};
     Color shadowed{0.0f}, unshadowed{0.0f};  // light of lamps that is kept off; all of it
 };
@@ -67,13 +69,20 @@ public:
     /// Adds a film of the same passes whose window lies within this one; the bits of the sum do not
     /// depend on the order.
     void merge(const Film& other);
-    /// Means of what was added.
+    /// Means of what was added; of coverage by names there is none.
     std::vector<Layer> layers() const { return layers(window_); }
     /// The same of a part of the window; other threads may add outside it.
     std::vector<Layer> layers(const PixelWindow& part) const;
+    /// What a pass of names counted; null for the others.
+    IdCoverage* coverage(std::size_t pass) noexcept {
+        return planes_[pass].coverage ? &*planes_[pass].coverage : nullptr;
+    }
+    /// Samples of all pixels.
+    std::vector<std::uint32_t> sample_counts() const;
     std::size_t bytes() const noexcept;
 
-    /// All that the film holds, as named arrays of plain numbers: what a checkpoint saves.
+    /// All that the film holds but coverage, as named arrays of plain numbers: what a checkpoint
+    /// saves.
     struct Array {
         std::string name;
         std::span<std::byte> bytes;
@@ -94,6 +103,7 @@ private:
     struct Plane {
         std::vector<Sum> sums;
         std::vector<float> nearest;
+        std::optional<IdCoverage> coverage;
     };
     std::size_t pixel(int x, int y) const noexcept {
         return std::size_t(y - window_.y0) * static_cast<std::size_t>(window_.width()) +

@@ -47,6 +47,9 @@ constexpr PassInfo kReady[] = {
     data("facing", "A", S::facing, "cosine between shading normal and view; the mean"),
     data("object_id", "V", S::object_id, "number of the object, from 1; of the nearest sample"),
     data("material_id", "V", S::material_id, "number of the material, from 1; likewise"),
+    data("CryptoObject", "RGBA", S::crypto_object, "Cryptomatte of objects, three layers"),
+    data("CryptoMaterial", "RGBA", S::crypto_material, "Cryptomatte of materials"),
+    data("CryptoAsset", "RGBA", S::crypto_asset, "Cryptomatte of instances"),
 
     light("direct", "C.[LOB]", "light that was scattered once"),
     light("indirect", "C..+[LOB]", "light that was scattered more than once"),
@@ -119,6 +122,7 @@ constexpr PassPreset kPresets[] = {
      "background albedo diffuse_albedo specular_albedo coat_albedo transmission_albedo sss_albedo "
      "sheen_albedo shadow shadow_matte",
      "surfaces: lobes, their albedos, and geometry"},
+    {"cryptomatte", "CryptoObject CryptoMaterial CryptoAsset", "mattes of everything by name"},
     {"denoise", "albedo N Z variance", "what denoisers take beside beauty"},
     {"debug", "Z P N Ng uv facing object_id material_id sample_count seconds variance",
      "what to look at when something is wrong"},

@@ -30,6 +30,9 @@ enum class PassSource : std::uint8_t {
     ao,
     object_id,  // of the nearest sample
     material_id,
+    crypto_object,  // coverage by names
+    crypto_material,
+    crypto_asset,
     sample_count,
     seconds,
     variance,

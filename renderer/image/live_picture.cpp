@@ -94,6 +94,7 @@ bool LivePicture::put(const PixelWindow& area, const PixelWindow& part,
     bool changed = false;
     for (const Layer& layer : layers) {
         const std::size_t count = layer.channels.size();
+        if (first + count > channels_.size()) break;
         for (int y = area.y0; y < area.y1; ++y) {
             const float* from = layer.pixels.data() + index_in(part, area.x0, y) * count;
             for (int x = area.x0; x < area.x1; ++x, from += count) {

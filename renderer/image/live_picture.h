@@ -25,9 +25,9 @@ public:
     explicit LivePicture(const PixelWindow& window);
     ~LivePicture();
 
-    /// The pixels of `part`, which lies in the window, as they are now. Every call names the same
-    /// channels. Any thread; waits for copies of single cells only. True if a pixel changed its
-    /// bits.
+    /// The pixels of `part`, which lies in the window, as they are now. Every call names the
+    /// channels of the first; layers after those, as mattes that come with the last one, are left
+    /// out. Any thread; waits for copies of single cells only. True if a pixel changed its bits.
     bool update(const PixelWindow& part, const std::vector<Layer>& layers);
 
     /// False before the first update: there are no names yet.

@@ -33,6 +33,10 @@ void note_geometry(const Scene& scene, const Hit& hit, Vec3f d, bool uv, Surface
     out.n = dot(s.ns, d) <= 0.0f ? s.ns : -s.ns;
     out.ng = dot(s.ng, d) <= 0.0f ? s.ng : -s.ng;
     out.facing = std::min(std::fabs(dot(s.ns, d)), 1.0f);
+    if (const NameIds* names = scene.name_ids()) {
+        const NameKeys keys = names->keys(scene.geometry(), s);
+        out.object = keys[0] + 1, out.material = keys[1] + 1, out.asset = keys[2] + 1;
+    }
     if (!uv) return;
     add_texture_frame(scene.geometry(), hit, s);
     out.uv = s.uv;

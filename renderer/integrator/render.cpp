@@ -10,6 +10,7 @@
 #include "renderer/core/parallel.h"
 #include "renderer/film/film.h"
 #include "renderer/integrator/block.h"
+#include "renderer/integrator/mattes.h"
 #include "renderer/integrator/path_passes.h"
 #include "renderer/integrator/tiles.h"
 
@@ -165,6 +166,7 @@ private:
             s.first_invalid = std::string(to_string(f.cause)) + " at pixel " + std::to_string(f.x) +
                               "," + std::to_string(f.y) + " sample " + std::to_string(f.sample);
         }
+        add_mattes(scene_, film_, r.image, s.notes);
         if (film_.passes().empty()) s.left_out.push_back({"passes", "only beauty was asked for"});
         return r;
     }

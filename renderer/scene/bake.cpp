@@ -154,7 +154,8 @@ Mesh bake_mesh(const MeshDesc& desc, const Affined& place, const BakeNeeds& need
         }
         if (!desc.face_material.empty())
             mesh.face_material.push_back(static_cast<std::uint16_t>(desc.face_material[f.index]));
-        if (!desc.face_object.empty()) mesh.face_object.push_back(desc.face_object[f.index]);
+        if (needs.objects && !desc.face_object.empty())
+            mesh.face_object.push_back(desc.face_object[f.index]);
     }
     mesh.finish_vertices();
     mesh.vertices.shrink_to_fit();

@@ -12,6 +12,7 @@ namespace tessera {
 struct BakeNeeds {
     bool uvs = true;
     bool colors = true;
+    bool objects = true;
     std::function<bool(int material)> cutout;  // does this material (scene index) cut holes
     bool any_cutout_override = false;          // an instance's own material does
 };

@@ -17,6 +17,7 @@
 #include "renderer/scene/flatten.h"
 #include "renderer/scene/hash.h"
 #include "renderer/scene/map_file.h"
+#include "renderer/scene/name_collector.h"
 #include "renderer/scene/opacity.h"
 #include "renderer/scene/placement.h"
 #include "renderer/scene/subdivision.h"
@@ -41,6 +42,7 @@ public:
         choose_passes();
         place_origin();
         if (any_subdivided(desc_, instances_)) subdivide();
+        if (wants_name_ids(scene_->passes_)) names_.emplace(desc_);
         place_shapes();
         make_lights();
         if (desc_.camera.projection != Projection::perspective && desc_.camera.aperture_radius > 0)
@@ -55,6 +57,8 @@ public:
         scene_->camera_ = Camera(desc_.camera, desc_.film.width, desc_.film.height, scene_->origin_,
                                  scene_->bounds_min_, scene_->bounds_max_);
         problems_.throw_if_any();
+        if (names_)
+            scene_->name_ids_ = std::make_unique<NameIds>(names_->finish(scene_->geometry_));
         choose_kernel();
         build_accel();
         account();
@@ -223,7 +227,7 @@ private:
             placed.objects_are_at(translation(-scene_->origin_) * i.to_world);
             ShapeUse& use = uses[{i.kind, i.index}];
             place_shape(i, use, placed);
-            add_placement(placed);
+            add_placement(i, placed);
         }
         for (MeshDesc& mesh : desc_.meshes) mesh = MeshDesc{};
     }
@@ -323,6 +327,7 @@ private:
         needs.uvs = std::any_of(scene_->passes_.begin(), scene_->passes_.end(),
                                 [](const Pass& p) { return p.source == PassSource::uv; });
         needs.colors = false;
+        needs.objects = names_.has_value();
         for (std::size_t m = 0; m < scene_->programs_.size(); ++m) {
             // Any used material may stand on it through an override; finer bookkeeping would save
             // little.
@@ -332,6 +337,7 @@ private:
             needs.colors |= f.vertex_color;
         }
         scene_->geometry_.meshes.push_back(bake_mesh(desc, place, needs, bake_report_));
+        if (names_) names_->add_mesh(desc);
         Mesh& mesh = scene_->geometry_.meshes.back();
         float crease_angle_deg = use.crease_angle_deg;
         for (auto& m : mesh.materials) {
@@ -343,10 +349,11 @@ private:
         return static_cast<int>(scene_->geometry_.meshes.size()) - 1;
     }
 
-    void add_placement(const Placement& placed) {
+    void add_placement(const FlatInstance& i, const Placement& placed) {
         const Geometry& g = scene_->geometry_;
         if (placed.kind == PlacedKind::mesh && g.meshes[placed.shape].parts.empty()) return;
         scene_->geometry_.placements.push_back(placed);
+        if (names_) names_->add_placement(i, placed);
     }
 
     void make_lights() {
@@ -465,6 +472,7 @@ private:
                     g.meshes[p.shape].triangles + 2 * std::uint64_t(g.meshes[p.shape].quads);
         }
         s.memory_geometry += g.placements.capacity() * sizeof(Placement);
+        if (scene_->name_ids_) s.memory_geometry += scene_->name_ids_->bytes();
         s.memory_bvh =
             static_cast<std::uint64_t>(std::max<std::int64_t>(0, scene_->accel_->bytes()));
         s.texture_limit = static_cast<std::uint64_t>(options_.texture_memory);
@@ -507,6 +515,7 @@ private:
               fmt::format("nothing reads them ({} bytes)", bake_report_.dropped_uvs));
         leave(bake_report_.dropped_colors > 0, "vertex colours",
               fmt::format("nothing reads them ({} bytes)", bake_report_.dropped_colors));
+        leave(!scene_->name_ids_, "names of things", "no pass asks for them");
         leave(!f.instances, "instance transforms",
               "every shape stands once and was moved into place");
         leave(!f.lens, "lens", "the aperture is zero");
@@ -529,6 +538,7 @@ private:
     std::vector<FlatInstance> instances_;
     std::vector<bool> used_;
     std::vector<Displacement> displacements_;  // per material
+    std::optional<NameCollector> names_;       // if a pass asks
     std::size_t textures_left_out_ = 0;
     BakeReport bake_report_;
 };

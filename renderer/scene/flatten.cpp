@@ -26,6 +26,7 @@ struct Flattener {
     const SceneDesc& desc;
     Problems& problems;
     std::vector<FlatInstance> out;
+    std::uint32_t outermost = 0;
 
     void place(const InstanceDesc& instance, const Affined& parent, int material, int depth) {
         const int chosen = material >= 0 ? material : instance.material;
@@ -55,7 +56,7 @@ struct Flattener {
                     problems.error(instance.loc, "more than 268435456 instances");
                     problems.throw_if_any();
                 }
-                out.push_back({instance.of.kind, instance.of.index, m, chosen});
+                out.push_back({instance.of.kind, instance.of.index, m, chosen, outermost});
             }
         }
     }
@@ -65,7 +66,10 @@ struct Flattener {
 
 std::vector<FlatInstance> flatten(const SceneDesc& desc, Problems& problems) {
     Flattener f{desc, problems, {}};
-    for (const InstanceDesc& instance : desc.instances) f.place(instance, Affined(), -1, 0);
+    for (const InstanceDesc& instance : desc.instances) {
+        f.place(instance, Affined(), -1, 0);
+        ++f.outermost;
+    }
     return std::move(f.out);
 }
 

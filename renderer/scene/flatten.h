@@ -13,6 +13,7 @@ struct FlatInstance {
     int index = -1;
     Affined to_world;
     int material = -1;
+    std::uint32_t outermost = 0;  // of SceneDesc::instances, that it comes from
 };
 
 /// In file order. Singular and non-finite transforms are left out with a warning; a group inside

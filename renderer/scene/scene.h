@@ -16,6 +16,7 @@
 #include "renderer/scene/camera.h"
 #include "renderer/scene/features.h"
 #include "renderer/scene/light_tags.h"
+#include "renderer/scene/name_ids.h"
 
 namespace tessera {
 
@@ -36,6 +37,8 @@ public:
     /// What is asked for beyond beauty, and the expressions of it compiled.
     const Passes& passes() const noexcept { return passes_; }
     const LightPaths& light_paths() const noexcept { return light_paths_; }
+    /// The names of what is hit; null unless a pass asks for them.
+    const NameIds* name_ids() const noexcept { return name_ids_.get(); }
     const TextureStore* textures() const noexcept { return textures_.get(); }
     /// Whether a ray can run into something that shines.
     bool emission_can_be_hit() const noexcept { return emission_can_be_hit_; }
@@ -62,6 +65,7 @@ private:
     LightTags light_tags_;
     Passes passes_;
     LightPaths light_paths_;
+    std::unique_ptr<const NameIds> name_ids_;
     LightSet lights_;
     bool emission_can_be_hit_ = false;
     Camera camera_;

@@ -181,3 +181,18 @@ TEST_CASE("render: the last tiles together are the picture") {
     const std::vector<float>& beauty = result.image.layers[0].pixels;
     CHECK_MESSAGE(*std::max_element(beauty.begin(), beauty.end()) > 0.5f, "there is a picture");
 }
+
+TEST_CASE("live picture: layers that only the last picture has are left out") {
+    const PixelWindow window{0, 0, 70, 9};
+    LivePicture picture(window);
+    picture.update(window, layers_of(window, 1));
+    std::vector<Layer> last = layers_of(window, 1);
+    last.push_back({"CryptoObject00",
+                    {"R", "G", "B", "A"},
+                    LayerKind::data,
+                    std::vector<float>(70 * 9 * 4, 5.0f)});
+    CHECK_FALSE(picture.update(window, last));
+    CHECK(picture.channels().size() == 3);
+    Piece piece;
+    while (picture.take(piece)) CHECK(std::ranges::count(piece.pixels, 5.0f) == 0);
+}
