@@ -89,6 +89,12 @@ void ProgressPrinter::warn(const std::string& text) {
     log_warning(text);
 }
 
+void ProgressPrinter::info(const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    end_bar();
+    log_info(text);
+}
+
 std::uint64_t peak_memory() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);

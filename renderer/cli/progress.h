@@ -13,8 +13,9 @@ public:
     /// enabled false: prints nothing.
     explicit ProgressPrinter(bool enabled);
     void show(const Progress& p);
-    /// A warning on a line of its own, from any thread.
+    /// A warning, a line of the log: on lines of their own, from any thread.
     void warn(const std::string& text);
+    void info(const std::string& text);
     /// Ends the bar's line, so that what follows starts on its own.
     void finish();
 

@@ -16,6 +16,7 @@
 #include "renderer/cli/progress.h"
 #include "renderer/cli/scene_options.h"
 #include "renderer/cli/signals.h"
+#include "renderer/cli/snapshots.h"
 #include "renderer/cli/tev_display.h"
 #include "renderer/core/log.h"
 #include "renderer/image/atomic_file.h"
@@ -134,13 +135,17 @@ std::unique_ptr<TevDisplay> open_display(const FilmDesc& film, const RenderOptio
 }
 
 RenderResult render_with_progress(const Scene& scene, const RenderOptions& o,
-                                  ProgressPrinter& printer, TevDisplay* display) {
+                                  const Snapshots::Write& write, ProgressPrinter& printer,
+                                  TevDisplay* display) {
+    Snapshots snapshots(write, printer);
     RenderSettings settings;
     settings.threads = o.scene.threads;
     settings.tile = o.scene.tile;
     settings.time_s = o.time_s;
     settings.cancel = &stop_at_next_tile();
     settings.progress = [&](const Progress& p) { printer.show(p); };
+    settings.snapshot = &snapshot_wanted();
+    settings.on_snapshot = [&](RenderResult&& r) { snapshots.start(std::move(r)); };
     if (display) {
         settings.on_tile = [=](const PixelWindow& tile, const std::vector<Layer>& layers) {
             display->show(tile, layers);
@@ -172,7 +177,13 @@ int run_render(RenderOptions options, const std::string& command) {
 
     ProgressPrinter printer(!options.no_progress && !options.quiet);
     const auto display = open_display(scene->film(), options, printer);
-    RenderResult result = render_with_progress(*scene, options, printer, display.get());
+    const auto write = [&](RenderResult& r) {
+        describe_in_header(r.image, *scene, r.stats, command);
+        const WriteReport report = write_exr(r.image, options.output, {options.all_float});
+        if (!options.preview.empty()) write_preview(r.image, options.preview, options.view);
+        return report;
+    };
+    RenderResult result = render_with_progress(*scene, options, write, printer, display.get());
     Statistics& s = result.stats;
     s.load_s = load_s;
     if (!result.complete && s.samples == 0) {
@@ -182,9 +193,7 @@ int run_render(RenderOptions options, const std::string& command) {
     say_what_was_rendered(s);
 
     const auto start = std::chrono::steady_clock::now();
-    describe_in_header(result.image, *scene, s, command);
-    const WriteReport written = write_exr(result.image, options.output, {options.all_float});
-    if (!options.preview.empty()) write_preview(result.image, options.preview, options.view);
+    const WriteReport written = write(result);
     s.write_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     s.half_clamped = written.clamped;
     s.half_non_finite = written.non_finite;
