@@ -28,7 +28,7 @@ namespace {
 
 struct RenderOptions {
     SceneOptions scene;
-    std::string output, preview, view, stats, display;
+    std::string output, preview, view, stats, display, progress = "auto";
     double time_s = 0;
     bool all_float = false, no_progress = false, quiet = false;
     int verbose = 0;
@@ -134,6 +134,14 @@ std::unique_ptr<TevDisplay> open_display(const FilmDesc& film, const RenderOptio
                                         });
 }
 
+ProgressStyle progress_style(const RenderOptions& o) {
+    const std::vector<std::string>& styles = progress_styles();
+    const auto found = std::find(styles.begin(), styles.end(), o.progress);
+    const auto style = static_cast<ProgressStyle>(found - styles.begin());
+    const bool silent = o.no_progress || (o.quiet && style == ProgressStyle::automatic);
+    return silent ? ProgressStyle::none : style;
+}
+
 RenderResult render_with_progress(const Scene& scene, const RenderOptions& o,
                                   const Snapshots::Write& write, ProgressPrinter& printer,
                                   TevDisplay* display) {
@@ -166,6 +174,9 @@ int run_render(RenderOptions options, const std::string& command) {
     }
     catch_signals();
     if (!options.display.empty()) parse_viewer_address(options.display);
+    if (options.progress == "tractor" && options.stats == "-")
+        throw Error(ExitCode::usage,
+                    "--progress tractor: standard output is that of --stats -; give it a file");
     check_outputs(outputs_of(options));
 
     double load_s = 0;
@@ -175,7 +186,7 @@ int run_render(RenderOptions options, const std::string& command) {
     const ScenePtr scene = build_scene(std::move(desc), options.scene.build_options());
     say_what_was_built(describe(*scene), load_s, options.quiet);
 
-    ProgressPrinter printer(!options.no_progress && !options.quiet);
+    ProgressPrinter printer(progress_style(options));
     const auto display = open_display(scene->film(), options, printer);
     const auto write = [&](RenderResult& r) {
         describe_in_header(r.image, *scene, r.stats, command);
@@ -235,7 +246,9 @@ void add_render(CLI::App& app, CommandLine& line) {
                     "HOST:PORT of a tev viewer that shows the picture as it grows")
         ->check(named);
     sub->add_flag("--float", o->all_float, "All channels as 32-bit float");
-    sub->add_flag("--no-progress", o->no_progress, "No progress on stderr");
+    sub->add_option("--progress", o->progress, "auto, bar, line, json, tractor or none")
+        ->check(CLI::IsMember(progress_styles()));
+    sub->add_flag("--no-progress", o->no_progress, "As --progress none");
     sub->add_flag("-v,--verbose", o->verbose, "Say more");
     sub->add_flag("-q,--quiet", o->quiet, "Say nothing but errors");
     sub->footer(
