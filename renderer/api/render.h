@@ -103,6 +103,12 @@ struct Progress {
     int spp = 0;  // of the pass under way
 };
 
+struct RenderResult {
+    LayeredImage image;
+    Statistics stats;
+    bool complete = true;  // false: not finished; the picture holds what there was
+};
+
 struct RenderSettings {
     int threads = 0;    // 0: what affinity, cgroup and Slurm allow; negative: all but that many
     int tile = 32;      // pixels, a multiple of 4
@@ -111,12 +117,10 @@ struct RenderSettings {
     std::function<void(const Progress&)> progress;  // called from one thread at a time
     /// A tile of a pass is finished: its pixels so far, to be copied. Called by several at a time.
     std::function<void(const PixelWindow&, const std::vector<Layer>&)> on_tile;
-};
-
-struct RenderResult {
-    LayeredImage image;
-    Statistics stats;
-    bool complete = true;  // false: cancelled; the picture holds what there was
+    /// Set to have the picture so far handed to on_snapshot once the tiles under way are finished;
+    /// cleared then. The others wait while on_snapshot runs.
+    std::atomic<bool>* snapshot = nullptr;
+    std::function<void(RenderResult&&)> on_snapshot;
 };
 
 /// Never throws from the loop; Error(memory) if the film does not fit.

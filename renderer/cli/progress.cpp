@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <string_view>
 
@@ -37,13 +38,21 @@ std::string clock_text(double s) {
 
 }  // namespace
 
-ProgressPrinter::ProgressPrinter(bool enabled) : enabled_(enabled), terminal_(can_draw()) {}
+const std::vector<std::string>& progress_styles() {
+    static const std::vector<std::string> kStyles{"auto", "bar", "line", "json", "tractor", "none"};
+    return kStyles;
+}
+
+ProgressPrinter::ProgressPrinter(ProgressStyle style) : style_(style) {
+    if (style == ProgressStyle::automatic)
+        style_ = can_draw() ? ProgressStyle::bar : ProgressStyle::line;
+}
 
 void ProgressPrinter::show(const Progress& p) {
-    if (!enabled_) return;
+    if (style_ == ProgressStyle::none) return;
     const std::lock_guard lock(mutex_);
     const bool end = p.fraction >= 1.0;
-    if (terminal_) {
+    if (style_ == ProgressStyle::bar) {
         if (!end && p.elapsed_s - last_time_ < kBarSeconds) return;
         bar(p);
     } else {
@@ -51,7 +60,8 @@ void ProgressPrinter::show(const Progress& p) {
             p.fraction - last_fraction_ < kLineShare)
             return;
         if (!end && p.elapsed_s - last_time_ < 1.0) return;
-        line(p);
+        style_ == ProgressStyle::json ? json(p) : line(p);
+        if (style_ == ProgressStyle::tractor) tractor(p);
     }
     last_time_ = p.elapsed_s;
     last_fraction_ = p.fraction;
@@ -73,6 +83,20 @@ void ProgressPrinter::line(const Progress& p) {
                           p.fraction * 100, p.spp, p.elapsed_s, p.eta_s, peak_memory() >> 20));
 }
 
+void ProgressPrinter::json(const Progress& p) {
+    print_err(
+        fmt::format("{{\"progress\": {:.4f}, \"spp\": {}, \"elapsed_s\": {:.1f}, "
+                    "\"eta_s\": {:.1f}, \"rss_mib\": {}}}\n",
+                    p.fraction, p.spp, p.elapsed_s, p.eta_s, peak_memory() >> 20));
+}
+
+// A lost reader of the progress is no reason to end the render: failures are ignored.
+void ProgressPrinter::tractor(const Progress& p) {
+    const std::string text = fmt::format("TR_PROGRESS {:03.0f}%\n", std::floor(p.fraction * 100));
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    std::fflush(stdout);
+}
+
 void ProgressPrinter::end_bar() {
     if (open_) print_err("\n");
     open_ = false;
@@ -87,6 +111,12 @@ void ProgressPrinter::warn(const std::string& text) {
     const std::lock_guard lock(mutex_);
     end_bar();
     log_warning(text);
+}
+
+void ProgressPrinter::info(const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    end_bar();
+    log_info(text);
 }
 
 std::uint64_t peak_memory() {

@@ -17,6 +17,7 @@
 #include "renderer/cli/progress.h"
 #include "renderer/cli/scene_options.h"
 #include "renderer/cli/signals.h"
+#include "renderer/cli/snapshots.h"
 #include "renderer/cli/tev_display.h"
 #include "renderer/core/log.h"
 #include "renderer/film/pass_docs.h"
@@ -29,7 +30,8 @@ namespace {
 
 struct RenderOptions {
     SceneOptions scene;
-    std::string output, preview, view, stats, display, crypto_manifest = "embedded";
+    std::string output, preview, view, stats, display;
+    std::string progress = "auto", crypto_manifest = "embedded";
     double time_s = 0;
     bool all_float = false, no_progress = false, quiet = false;
     int verbose = 0;
@@ -135,14 +137,26 @@ std::unique_ptr<TevDisplay> open_display(const FilmDesc& film, const RenderOptio
                                         });
 }
 
+ProgressStyle progress_style(const RenderOptions& o) {
+    const std::vector<std::string>& styles = progress_styles();
+    const auto found = std::find(styles.begin(), styles.end(), o.progress);
+    const auto style = static_cast<ProgressStyle>(found - styles.begin());
+    const bool silent = o.no_progress || (o.quiet && style == ProgressStyle::automatic);
+    return silent ? ProgressStyle::none : style;
+}
+
 RenderResult render_with_progress(const Scene& scene, const RenderOptions& o,
-                                  ProgressPrinter& printer, TevDisplay* display) {
+                                  const Snapshots::Write& write, ProgressPrinter& printer,
+                                  TevDisplay* display) {
+    Snapshots snapshots(write, printer);
     RenderSettings settings;
     settings.threads = o.scene.threads;
     settings.tile = o.scene.tile;
     settings.time_s = o.time_s;
     settings.cancel = &stop_at_next_tile();
     settings.progress = [&](const Progress& p) { printer.show(p); };
+    settings.snapshot = &snapshot_wanted();
+    settings.on_snapshot = [&](RenderResult&& r) { snapshots.start(std::move(r)); };
     if (display) {
         settings.on_tile = [=](const PixelWindow& tile, const std::vector<Layer>& layers) {
             display->show(tile, layers);
@@ -163,6 +177,9 @@ int run_render(RenderOptions options, const std::string& command) {
     }
     catch_signals();
     if (!options.display.empty()) parse_viewer_address(options.display);
+    if (options.progress == "tractor" && options.stats == "-")
+        throw Error(ExitCode::usage,
+                    "--progress tractor: standard output is that of --stats -; give it a file");
     check_outputs(outputs_of(options));
 
     double load_s = 0;
@@ -172,9 +189,17 @@ int run_render(RenderOptions options, const std::string& command) {
     const ScenePtr scene = build_scene(std::move(desc), options.scene.build_options());
     say_what_was_built(describe(*scene), load_s, options.quiet);
 
-    ProgressPrinter printer(!options.no_progress && !options.quiet);
+    ProgressPrinter printer(progress_style(options));
     const auto display = open_display(scene->film(), options, printer);
-    RenderResult result = render_with_progress(*scene, options, printer, display.get());
+    const auto write = [&](RenderResult& r) {
+        describe_in_header(r.image, *scene, r.stats, command);
+        if (options.crypto_manifest == "sidecar")
+            write_manifests(move_manifests(r.image.metadata, options.output));
+        const WriteReport report = write_exr(r.image, options.output, {options.all_float});
+        if (!options.preview.empty()) write_preview(r.image, options.preview, options.view);
+        return report;
+    };
+    RenderResult result = render_with_progress(*scene, options, write, printer, display.get());
     Statistics& s = result.stats;
     s.load_s = load_s;
     if (!result.complete && s.samples == 0) {
@@ -184,11 +209,7 @@ int run_render(RenderOptions options, const std::string& command) {
     say_what_was_rendered(s);
 
     const auto start = std::chrono::steady_clock::now();
-    describe_in_header(result.image, *scene, s, command);
-    if (options.crypto_manifest == "sidecar")
-        write_manifests(move_manifests(result.image.metadata, options.output));
-    const WriteReport written = write_exr(result.image, options.output, {options.all_float});
-    if (!options.preview.empty()) write_preview(result.image, options.preview, options.view);
+    const WriteReport written = write(result);
     s.write_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     s.half_clamped = written.clamped;
     s.half_non_finite = written.non_finite;
@@ -241,7 +262,9 @@ void add_render(CLI::App& app, CommandLine& line) {
     sub->add_option("--crypto-manifest", o->crypto_manifest,
                     "Cryptomatte's names in the header or in files beside it: embedded, sidecar")
         ->check(CLI::IsMember({"embedded", "sidecar"}));
-    sub->add_flag("--no-progress", o->no_progress, "No progress on stderr");
+    sub->add_option("--progress", o->progress, "auto, bar, line, json, tractor or none")
+        ->check(CLI::IsMember(progress_styles()));
+    sub->add_flag("--no-progress", o->no_progress, "As --progress none");
     sub->add_flag("-v,--verbose", o->verbose, "Say more");
     sub->add_flag("-q,--quiet", o->quiet, "Say nothing but errors");
     sub->footer(

@@ -9,6 +9,7 @@ namespace tessera {
 namespace {
 
 std::atomic<bool> g_cancel{false};
+std::atomic<bool> g_snapshot{false};
 std::atomic<bool> g_rendering{false};
 std::atomic<int> g_signal{0};
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
@@ -29,6 +30,8 @@ extern "C" void on_signal(int number) {
     _exit(128 + number);
 }
 
+extern "C" void on_snapshot_signal(int /*number*/) { g_snapshot.store(true); }
+
 }  // namespace
 
 void catch_signals() {
@@ -40,12 +43,17 @@ void catch_signals() {
         sigaction(number, nullptr, &old);
         if (old.sa_handler != SIG_IGN) sigaction(number, &action, nullptr);
     }
+    action.sa_handler = on_snapshot_signal;
+    action.sa_flags = SA_RESTART;
+    sigaction(SIGUSR1, &action, nullptr);
 }
 
 const std::atomic<bool>& stop_at_next_tile() {
     g_rendering.store(true);
     return g_cancel;
 }
+
+std::atomic<bool>& snapshot_wanted() { return g_snapshot; }
 
 int signal_exit_code() {
     const int number = g_signal.load();

@@ -70,17 +70,42 @@ private:
 
     void render_pass(int first, int last, int spp) {
         std::atomic<int> finished{0};
+        std::vector<char> done(tiles_.size());
+        do {
+            render_tiles(first, last, spp, done, finished);
+        } while (give_snapshot(first));
+    }
+
+    // Those not done yet; leaves some when a snapshot is wanted.
+    void render_tiles(int first, int last, int spp, std::vector<char>& done,
+                      std::atomic<int>& finished) {
         workers_.for_each(static_cast<int>(tiles_.size()), [&](int t) {
+            if (done[t] || (finished > 0 && snapshot_wanted())) return;
             if (settings_.cancel && settings_.cancel->load(std::memory_order_relaxed)) {
                 stopped_ = true;
                 return;
             }
             render_tile(tiles_[t], first, last);
+            done[t] = 1;
             if (settings_.on_tile) settings_.on_tile(tiles_[t], film_.layers(tiles_[t]));
             const double share =
                 static_cast<double>(finished.fetch_add(1) + 1) / static_cast<double>(tiles_.size());
             report(first + (last - first) * share, spp, last);
         });
+    }
+
+    bool snapshot_wanted() const {
+        return settings_.snapshot && settings_.snapshot->load(std::memory_order_relaxed);
+    }
+
+    // No tile is under way.
+    bool give_snapshot(int done) {
+        if (stopped_ || !snapshot_wanted()) return false;
+        settings_.snapshot->store(false);
+        RenderResult so_far = finish(done);
+        so_far.complete = so_far.stats.complete = false;
+        settings_.on_snapshot(std::move(so_far));
+        return true;
     }
 
     void render_tile(const PixelWindow& tile, int first, int last) {

@@ -1,5 +1,6 @@
 """tessera render: what stands in the file, and what the options change."""
 
+import json
 import math
 import shutil
 import struct
@@ -7,7 +8,7 @@ import subprocess
 import unittest
 
 from exr import Exr
-from support import SCENE_TOML, SLOWDOWN, TesseraTest
+from support import SCENE_TOML, SLOWDOWN, USAGE, TesseraTest
 
 DEFAULT_CHANNELS = {
     "R": "half",
@@ -190,6 +191,29 @@ class Console(TesseraTest):
         self.assertNotIn("\x1b", run.err)
         self.assertRegex(run.err, r"(?m)^.*progress.*\b100(\.0)?%")
         self.assertEqual(run.out, "")
+
+    def progress(self, style, *args):
+        return self.expect(0, "render", "scene.toml", "-o", "out.exr", "--progress", style, *args)
+
+    def test_progress_as_json_is_an_object_a_line(self):
+        run = self.progress("json", "-q")
+        last = [json.loads(line) for line in run.err.splitlines()][-1]
+        self.assertEqual(set(last), {"progress", "spp", "elapsed_s", "eta_s", "rss_mib"})
+        self.assertEqual((last["progress"], last["spp"]), (1, 4))
+
+    def test_progress_for_tractor_is_on_standard_output(self):
+        run = self.progress("tractor")
+        self.assertRegex(run.out, r"^(TR_PROGRESS [01]\d\d%\n)*TR_PROGRESS 100%\n$")
+        self.assertRegex(run.err, r"(?m)^progress 100\.0%")
+        run = self.expect(USAGE, "render", "scene.toml", "-o", "out.exr", "--progress", "tractor", "--stats", "-")
+        self.assertIn("--stats", run.err)
+
+    def test_progress_can_be_a_bar_or_nothing_anywhere(self):
+        self.assertRegex(self.progress("bar").err, r"\r\[#+\] 100% 4 spp")
+        self.assertNotIn("100", self.progress("none").err)
+        self.assertEqual(self.progress("auto", "-q").err, "")
+        run = self.expect(USAGE, "render", "scene.toml", "-o", "out.exr", "--progress", "loud")
+        self.assertIn("--progress", run.err)
 
     def test_no_progress_leaves_out_those_lines_only(self):
         run = self.expect(0, "render", "scene.toml", "-o", "out.exr", "--no-progress")

@@ -8,7 +8,7 @@ from support import SCENE, USAGE, TesseraTest
 
 RENDER_OPTIONS = (
     "--output --spp --time --res --crop --threads --tile --seed --set --aov --stats --preview --float --strict --lenient "
-    "--allow-external-assets --kernel --no-progress --display"
+    "--allow-external-assets --kernel --no-progress --progress --display"
 ).split()
 
 
