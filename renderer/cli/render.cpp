@@ -12,7 +12,10 @@
 
 #include "renderer/cli/commands.h"
 #include "renderer/cli/console.h"
+#include "renderer/cli/describe_picture.h"
+#include "renderer/cli/frame_window.h"
 #include "renderer/cli/output_check.h"
+#include "renderer/cli/output_options.h"
 #include "renderer/cli/progress.h"
 #include "renderer/cli/scene_options.h"
 #include "renderer/cli/signals.h"
@@ -27,9 +30,10 @@ namespace {
 
 struct RenderOptions {
     SceneOptions scene;
+    OutputOptions out;
     std::string output, preview, view, stats, display;
     double time_s = 0;
-    bool all_float = false, no_progress = false, quiet = false;
+    bool no_progress = false, quiet = false;
     int verbose = 0;
 };
 
@@ -44,22 +48,6 @@ std::string count(std::uint64_t n) {
     if (n >= 1000000000) return fmt::format("{:.2f}G", v * 1e-9);
     if (n >= 1000000) return fmt::format("{:.2f}M", v * 1e-6);
     return n >= 10000 ? fmt::format("{:.1f}k", v * 1e-3) : fmt::format("{}", n);
-}
-
-void describe_in_header(LayeredImage& image, const Scene& scene, const Statistics& s,
-                        const std::string& command) {
-    auto& m = image.metadata;
-    m.emplace_back("tessera/version", s.version);
-    m.emplace_back("tessera/scene", s.scene);
-    m.emplace_back("tessera/sceneHash", scene.hash());
-    m.emplace_back("tessera/spp", s.spp);
-    m.emplace_back("tessera/seed", std::to_string(s.seed));
-    m.emplace_back("tessera/seconds", static_cast<float>(s.render_s));
-    m.emplace_back("tessera/threads", s.threads);
-    m.emplace_back("tessera/embreeIsa", s.isa);
-    m.emplace_back("tessera/colorSpace", scene.film().working_space);
-    m.emplace_back("tessera/command", command);
-    if (!s.complete) m.emplace_back("tessera/partial", 1);
 }
 
 void write_stats(const Statistics& s, const std::string& path) {
@@ -152,6 +140,19 @@ RenderResult render_with_progress(const Scene& scene, const RenderOptions& o,
     return result;
 }
 
+// The window that was asked for, or the whole frame where it is padded (and overscan with it).
+void fit_to_frame(LayeredImage& image, PixelWindow window, bool pad) {
+    if (pad)
+        window = {std::min(window.x0, 0), std::min(window.y0, 0), std::max(window.x1, image.width),
+                  std::max(window.y1, image.height)};
+    if (window != image.window) image = reframe(image, window);
+}
+
+std::string names(const std::vector<std::string>& files) {
+    if (files.size() == 1) return files[0];
+    return fmt::format("{} and {} more", files[0], files.size() - 1);
+}
+
 int run_render(RenderOptions options, const std::string& command) {
     set_log_level(options.quiet ? LogLevel::quiet
                                 : (options.verbose > 0 ? LogLevel::verbose : LogLevel::normal));
@@ -166,6 +167,11 @@ int run_render(RenderOptions options, const std::string& command) {
     double load_s = 0;
     SceneDesc desc = options.scene.load(load_s);
     check_outputs_spare(outputs_of(options), desc);
+    options.out.apply(desc);
+    check_codec(desc);
+    const OutputDesc output = desc.output;
+    const FrameWindow window = frame_window(desc, options.scene.tile);
+    desc.film.crop = window.render;
     if (!options.preview.empty()) check_view(desc.film.working_space, options.view);
     const ScenePtr scene = build_scene(std::move(desc), options.scene.build_options());
     say_what_was_built(describe(*scene), load_s, options.quiet);
@@ -182,8 +188,10 @@ int run_render(RenderOptions options, const std::string& command) {
     say_what_was_rendered(s);
 
     const auto start = std::chrono::steady_clock::now();
-    describe_in_header(result.image, *scene, s, command);
-    const WriteReport written = write_exr(result.image, options.output, {options.all_float});
+    fit_to_frame(result.image, window.write, output.crop_pad);
+    describe_picture(result.image, *scene, s, command, output.deterministic_metadata);
+    const WriteReport written =
+        write_exr(result.image, options.output, write_options(output, options.scene.threads));
     if (!options.preview.empty()) write_preview(result.image, options.preview, options.view);
     s.write_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     s.half_clamped = written.clamped;
@@ -191,9 +199,9 @@ int run_render(RenderOptions options, const std::string& command) {
     s.memory_peak = peak_memory();
     if (!options.stats.empty()) write_stats(s, options.stats);
     if (!options.quiet) warn_of_lost_values(s);
-    log_info(fmt::format("wrote    {} ({:.1f} MiB, {:.2f} s), peak memory {} MiB{}", options.output,
-                         static_cast<double>(written.bytes) / (1 << 20), s.write_s,
-                         s.memory_peak >> 20, result.complete ? "" : ", partial"));
+    log_info(fmt::format("wrote    {} ({:.1f} MiB, {:.2f} s), peak memory {} MiB{}",
+                         names(written.files), static_cast<double>(written.bytes) / (1 << 20),
+                         s.write_s, s.memory_peak >> 20, result.complete ? "" : ", partial"));
     if (display) display->close();
     return static_cast<int>(result.complete ? ExitCode::done : ExitCode::checkpoint);
 }
@@ -225,7 +233,7 @@ void add_render(CLI::App& app, CommandLine& line) {
     sub->add_option("--display", o->display,
                     "HOST:PORT of a tev viewer that shows the picture as it grows")
         ->check(named);
-    sub->add_flag("--float", o->all_float, "All channels as 32-bit float");
+    o->out.add_to(*sub);
     sub->add_flag("--no-progress", o->no_progress, "No progress on stderr");
     sub->add_flag("-v,--verbose", o->verbose, "Say more");
     sub->add_flag("-q,--quiet", o->quiet, "Say nothing but errors");
