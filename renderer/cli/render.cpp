@@ -170,6 +170,7 @@ int run_render(RenderOptions options, const std::string& command) {
     options.out.apply(desc);
     check_codec(desc);
     const OutputDesc output = desc.output;
+    if (output.exr == ExrLayout::split) check_split_spares(outputs_of(options)[0], desc);
     const FrameWindow window = frame_window(desc, options.scene.tile);
     desc.film.crop = window.render;
     if (!options.preview.empty()) check_view(desc.film.working_space, options.view);

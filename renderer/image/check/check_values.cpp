@@ -81,11 +81,12 @@ void ValueCheck::look(const ExrStripView& strip, ChannelState& s) const {
     if (strip.planes[s.part].empty()) return;
     const std::vector<float>& plane = strip.planes[s.part][s.channel];
     const bool half = file_.parts[s.part].channels[s.channel].type == ExrType::half;
+    const bool lossy = file_.parts[s.part].lossy();  // makes small negative values of its own
     for (std::size_t i = 0; i < plane.size(); ++i) {
         const float v = plane[i];
         if (std::isnan(v)) s.tally[nan].add(strip, i);
         if (std::isinf(v)) s.tally[infinite].add(strip, i);
-        if (s.colour && v < 0) s.tally[negative].add(strip, i);
+        if (s.colour && v < 0 && !lossy) s.tally[negative].add(strip, i);
         if (half && std::abs(v) == kHalfMax) s.tally[limit].add(strip, i);
         if (s.alpha && (v < -kAlphaSlack || v > 1 + kAlphaSlack)) s.tally[alpha].add(strip, i);
     }

@@ -44,6 +44,15 @@ public:
         std::memcpy(&out, bytes(sizeof out).data(), sizeof out);
         return out;
     }
+    /// Anywhere in the file; reading goes on where it was.
+    std::uint64_t size_of_chunk(std::uint64_t offset) {
+        std::uint32_t size = 0;
+        file_.seekg(static_cast<std::streamoff>(offset));
+        file_.read(reinterpret_cast<char*>(&size), sizeof size);
+        if (!file_) throw Damage("the file cannot be read");
+        file_.seekg(static_cast<std::streamoff>(position_));
+        return size;
+    }
     std::string word(std::size_t longest) {
         std::string out;
         while (true) {
@@ -160,15 +169,24 @@ std::uint64_t count_tiles(const RawPart& part) {
     return sum;
 }
 
-// A chunk that is missing has offset 0 or one behind the end.
-void read_table(Reader& in, RawPart& part) {
+// A chunk that is missing has offset 0 or one behind the end; the last one may be there in part.
+void read_table(Reader& in, bool multipart, RawPart& part) {
     part.chunks = part.tiled ? count_tiles(part) : parts_of(part.data.height(), part.chunk_lines());
     const std::uint64_t there = std::min(part.chunks, in.left() / 8);
     part.missing = part.chunks - there;
+    std::uint64_t last = 0;
     for (std::uint64_t i = 0; i < there; ++i) {
         const auto offset = in.value<std::uint64_t>();
-        if (offset == 0 || offset + 8 > in.size()) ++part.missing;
+        if (offset == 0 || offset >= in.size())
+            ++part.missing;
+        else
+            last = std::max(last, offset);
     }
+    if (last == 0 || part.deep) return;
+    // Before the pixels: the part's number, a line or a tile and its level, the size.
+    const std::uint64_t size_at = last + (multipart ? 4 : 0) + (part.tiled ? 16 : 4);
+    const std::uint64_t end = size_at + 4;
+    if (end > in.size() || in.size() - end < in.size_of_chunk(size_at)) ++part.missing;
 }
 
 void read_all(const std::string& path, RawExr& out) {
@@ -187,7 +205,7 @@ void read_all(const std::string& path, RawExr& out) {
     if (out.parts.empty()) throw Damage("it has no header");
     for (RawPart& part : out.parts) {
         if (!part.data.sane() || !part.display.sane()) return;
-        read_table(in, part);
+        read_table(in, multipart, part);
     }
 }
 

@@ -85,8 +85,7 @@ constexpr std::array<ExrRuleText, static_cast<std::size_t>(R::count)> kRules{{
      "Clamp to 16384 before writing with DWA, or use ZIP."},
     {R::negative_colour, "negative-colour", warning,
      "Negative colours turn up as black dots or wrong hues after grading.",
-     "Clamp, or choose working primaries that hold the colours; DWA makes small ones beside "
-     "edges."},
+     "Clamp, or choose working primaries that hold the colours."},
     {R::half_limit, "half-limit", note, "Values at half's end, 65504: something was clamped there.",
      "Write float (tessera render --float) if the peaks matter."},
     {R::alpha_range, "alpha-range", warning, "Alpha outside 0 to 1.",
