@@ -37,19 +37,35 @@ struct LayeredImage {
 struct WriteOptions {
     bool all_float = false;
     int threads = 0;  // for compression; 0 = as many as the process may use
+    ExrLayout layout = ExrLayout::single;
+    ExrCompression compression = ExrCompression::zip;
+    float dwa_level = 45;
 };
 
-/// What became of the values on the way to half floats.
+/// What became of the values on the way to the file.
 struct WriteReport {
-    std::uint64_t non_finite = 0;  // replaced by 0
-    std::uint64_t clamped = 0;     // beyond +-65504 in a half channel
-    std::uint64_t bytes = 0;       // size of the file
+    std::uint64_t non_finite = 0;    // replaced by 0
+    std::uint64_t clamped = 0;       // beyond +-65504 in a half channel
+    std::uint64_t bytes = 0;         // of all files
+    std::vector<std::string> files;  // their names, beauty first
 };
 
-/// Writes one single-part layered EXR beside `path`, reads it back, renames it over `path`.
-/// A kill at any moment leaves the old file or the new one. Throws Error(ExitCode::output).
+/// Writes layered EXRs beside their targets, reads them back, renames them over the targets. A kill
+/// at any moment leaves an old file or a new one; of a split picture all files are written and
+/// checked before the first is renamed. Layers of LayerKind::data are float and without loss
+/// whatever the options; in a single part, which has one codec, dwaa and dwab are refused beside
+/// them. Throws Error(ExitCode::output), Error(ExitCode::usage) for options that exclude each
+/// other.
 WriteReport write_exr(const LayeredImage& image, const std::string& path,
                       const WriteOptions& options = {});
+
+/// The files that write_exr makes, without making them.
+std::vector<std::string> exr_files(const LayeredImage& image, const std::string& path,
+                                   const WriteOptions& options);
+
+/// The same picture over another window: what lies outside is left out, what is missing is 0 (Z:
+/// 1e10).
+LayeredImage reframe(const LayeredImage& image, const PixelWindow& window);
 
 /// Writes the beauty (root R,G,B,A) as .png or .jpg through a display view ("" = the config's
 /// default). Throws Error(ExitCode::output).

@@ -437,11 +437,27 @@ struct FilmDesc {
     int width = 960;
     int height = 540;
     std::optional<PixelWindow> crop;
+    double overscan = 0;  // share of width and height rendered beyond each edge; a crop goes before
+    int overscan_px = 0;  // the same in pixels
     PixelFilter filter = PixelFilter::blackman_harris;
     double filter_width_px = 3;                // full width of the support
     std::string working_space = "lin_rec709";  // or "acescg"
     std::vector<std::string> aovs;             // beyond beauty; empty = Z, N, P, albedo
     double ao_distance = 0;  // how far ambient occlusion looks, scene units; 0 = without end
+};
+
+/// split: a file per layer.
+enum class ExrLayout : std::uint8_t { single, multipart, split };
+enum class ExrCompression : std::uint8_t { none, zips, zip, piz, dwaa, dwab };
+
+/// How a picture lies on the disk.
+struct OutputDesc {
+    ExrLayout exr = ExrLayout::single;
+    ExrCompression compression = ExrCompression::zip;  // of colour; data is never lossy
+    double dwa_level = 45;                             // dwaa, dwab: more is smaller and coarser
+    bool all_float = false;
+    bool crop_pad = false;                // the whole frame, black where nothing was rendered
+    bool deterministic_metadata = false;  // no date, host, time, command in the header
 };
 
 enum class Integrator : std::uint8_t { path, whitted };
@@ -473,6 +489,7 @@ struct SceneDesc {
     std::string path;  // the file that was asked for
     CameraDesc camera;
     FilmDesc film;
+    OutputDesc output;
     RenderDesc render;
     std::optional<EnvironmentDesc> environment;
     std::optional<SkyDesc> sky;

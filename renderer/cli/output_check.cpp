@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <string_view>
 
 #include "renderer/api/error.h"
 #include "renderer/image/atomic_file.h"
@@ -11,6 +12,8 @@ namespace tessera {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::string_view kPlaceholder = "<aov>";
 
 std::string lower_extension(const std::string& path) {
     std::string extension = fs::path(path).extension().string();
@@ -39,6 +42,20 @@ fs::path real_path(const std::string& path) {
     return error ? fs::path(path) : real;
 }
 
+std::vector<std::string> inputs_of(const SceneDesc& scene) {
+    std::vector<std::string> inputs = scene.files;
+    inputs.push_back(scene.path);
+    for (const TextureDesc& texture : scene.textures) inputs.push_back(texture.file);
+    if (const auto& e = scene.environment) {
+        inputs.insert(inputs.end(), {e->file, e->camera, e->lighting, e->reflection});
+        inputs.insert(inputs.end(), e->faces.begin(), e->faces.end());
+    }
+    for (const MaterialDesc& m : scene.materials) {
+        if (m.reflection_map) inputs.push_back(m.reflection_map->file);
+    }
+    return inputs;
+}
+
 }  // namespace
 
 void check_outputs(const std::vector<OutputFile>& outputs) {
@@ -54,17 +71,28 @@ void check_outputs(const std::vector<OutputFile>& outputs) {
     }
 }
 
+void check_split_spares(const OutputFile& output, const SceneDesc& scene) {
+    std::string name = output.path;
+    if (name.find(kPlaceholder) == std::string::npos)
+        name = fs::path(name).replace_extension("." + std::string(kPlaceholder)).string() +
+               fs::path(output.path).extension().string();
+    const std::size_t at = name.find(kPlaceholder);
+    const fs::path start = real_path(name.substr(0, at) + "x");
+    const std::string before = start.string().substr(0, start.string().size() - 1);
+    const std::string after = name.substr(at + kPlaceholder.size());
+    for (const std::string& input : inputs_of(scene)) {
+        const std::string real = input.empty() ? "" : real_path(input).string();
+        if (real.size() < before.size() + after.size() || !real.starts_with(before) ||
+            !real.ends_with(after))
+            continue;
+        throw Error(ExitCode::usage, std::string(output.option) + " " + output.path +
+                                         ": a pass could replace '" + input +
+                                         "', which the scene is read from; give another name");
+    }
+}
+
 void check_outputs_spare(const std::vector<OutputFile>& outputs, const SceneDesc& scene) {
-    std::vector<std::string> inputs = scene.files;
-    inputs.push_back(scene.path);
-    for (const TextureDesc& texture : scene.textures) inputs.push_back(texture.file);
-    if (const auto& e = scene.environment) {
-        inputs.insert(inputs.end(), {e->file, e->camera, e->lighting, e->reflection});
-        inputs.insert(inputs.end(), e->faces.begin(), e->faces.end());
-    }
-    for (const MaterialDesc& m : scene.materials) {
-        if (m.reflection_map) inputs.push_back(m.reflection_map->file);
-    }
+    const std::vector<std::string> inputs = inputs_of(scene);
     for (const OutputFile& output : outputs) {
         if (output.path.empty()) continue;
         for (const std::string& input : inputs) {

@@ -19,6 +19,10 @@ struct OutputFile {
 /// name, Error(output) where a file cannot be created. Empty paths are skipped.
 void check_outputs(const std::vector<OutputFile>& outputs);
 
+/// The same for the files that a split picture's passes could go to: FILE.*.exr, or <aov> in the
+/// name being anything.
+void check_split_spares(const OutputFile& output, const SceneDesc& scene);
+
 /// Throws Error(usage) if an output would replace a file that the scene is read from.
 void check_outputs_spare(const std::vector<OutputFile>& outputs, const SceneDesc& scene);
 

@@ -12,8 +12,11 @@
 
 #include "renderer/cli/commands.h"
 #include "renderer/cli/console.h"
+#include "renderer/cli/describe_picture.h"
+#include "renderer/cli/frame_window.h"
 #include "renderer/cli/manifest_files.h"
 #include "renderer/cli/output_check.h"
+#include "renderer/cli/output_options.h"
 #include "renderer/cli/progress.h"
 #include "renderer/cli/scene_options.h"
 #include "renderer/cli/signals.h"
@@ -30,10 +33,11 @@ namespace {
 
 struct RenderOptions {
     SceneOptions scene;
+    OutputOptions out;
     std::string output, preview, view, stats, display;
     std::string progress = "auto", crypto_manifest = "embedded";
     double time_s = 0;
-    bool all_float = false, no_progress = false, quiet = false;
+    bool no_progress = false, quiet = false;
     int verbose = 0;
 };
 
@@ -48,22 +52,6 @@ std::string count(std::uint64_t n) {
     if (n >= 1000000000) return fmt::format("{:.2f}G", v * 1e-9);
     if (n >= 1000000) return fmt::format("{:.2f}M", v * 1e-6);
     return n >= 10000 ? fmt::format("{:.1f}k", v * 1e-3) : fmt::format("{}", n);
-}
-
-void describe_in_header(LayeredImage& image, const Scene& scene, const Statistics& s,
-                        const std::string& command) {
-    auto& m = image.metadata;
-    m.emplace_back("tessera/version", s.version);
-    m.emplace_back("tessera/scene", s.scene);
-    m.emplace_back("tessera/sceneHash", scene.hash());
-    m.emplace_back("tessera/spp", s.spp);
-    m.emplace_back("tessera/seed", std::to_string(s.seed));
-    m.emplace_back("tessera/seconds", static_cast<float>(s.render_s));
-    m.emplace_back("tessera/threads", s.threads);
-    m.emplace_back("tessera/embreeIsa", s.isa);
-    m.emplace_back("tessera/colorSpace", scene.film().working_space);
-    m.emplace_back("tessera/command", command);
-    if (!s.complete) m.emplace_back("tessera/partial", 1);
 }
 
 void write_stats(const Statistics& s, const std::string& path) {
@@ -168,6 +156,19 @@ RenderResult render_with_progress(const Scene& scene, const RenderOptions& o,
     return result;
 }
 
+// The window that was asked for, or the whole frame where it is padded (and overscan with it).
+void fit_to_frame(LayeredImage& image, PixelWindow window, bool pad) {
+    if (pad)
+        window = {std::min(window.x0, 0), std::min(window.y0, 0), std::max(window.x1, image.width),
+                  std::max(window.y1, image.height)};
+    if (window != image.window) image = reframe(image, window);
+}
+
+std::string names(const std::vector<std::string>& files) {
+    if (files.size() == 1) return files[0];
+    return fmt::format("{} and {} more", files[0], files.size() - 1);
+}
+
 int run_render(RenderOptions options, const std::string& command) {
     set_log_level(options.quiet ? LogLevel::quiet
                                 : (options.verbose > 0 ? LogLevel::verbose : LogLevel::normal));
@@ -185,6 +186,12 @@ int run_render(RenderOptions options, const std::string& command) {
     double load_s = 0;
     SceneDesc desc = options.scene.load(load_s);
     check_outputs_spare(outputs_of(options), desc);
+    options.out.apply(desc);
+    check_codec(desc);
+    const OutputDesc output = desc.output;
+    if (output.exr == ExrLayout::split) check_split_spares(outputs_of(options)[0], desc);
+    const FrameWindow window = frame_window(desc, options.scene.tile);
+    desc.film.crop = window.render;
     if (!options.preview.empty()) check_view(desc.film.working_space, options.view);
     const ScenePtr scene = build_scene(std::move(desc), options.scene.build_options());
     say_what_was_built(describe(*scene), load_s, options.quiet);
@@ -192,10 +199,12 @@ int run_render(RenderOptions options, const std::string& command) {
     ProgressPrinter printer(progress_style(options));
     const auto display = open_display(scene->film(), options, printer);
     const auto write = [&](RenderResult& r) {
-        describe_in_header(r.image, *scene, r.stats, command);
+        fit_to_frame(r.image, window.write, output.crop_pad);
+        describe_picture(r.image, *scene, r.stats, command, output.deterministic_metadata);
         if (options.crypto_manifest == "sidecar")
             write_manifests(move_manifests(r.image.metadata, options.output));
-        const WriteReport report = write_exr(r.image, options.output, {options.all_float});
+        const WriteReport report =
+            write_exr(r.image, options.output, write_options(output, options.scene.threads));
         if (!options.preview.empty()) write_preview(r.image, options.preview, options.view);
         return report;
     };
@@ -216,9 +225,9 @@ int run_render(RenderOptions options, const std::string& command) {
     s.memory_peak = peak_memory();
     if (!options.stats.empty()) write_stats(s, options.stats);
     if (!options.quiet) warn_of_lost_values(s);
-    log_info(fmt::format("wrote    {} ({:.1f} MiB, {:.2f} s), peak memory {} MiB{}", options.output,
-                         static_cast<double>(written.bytes) / (1 << 20), s.write_s,
-                         s.memory_peak >> 20, result.complete ? "" : ", partial"));
+    log_info(fmt::format("wrote    {} ({:.1f} MiB, {:.2f} s), peak memory {} MiB{}",
+                         names(written.files), static_cast<double>(written.bytes) / (1 << 20),
+                         s.write_s, s.memory_peak >> 20, result.complete ? "" : ", partial"));
     if (display) display->close();
     return static_cast<int>(result.complete ? ExitCode::done : ExitCode::checkpoint);
 }
@@ -250,6 +259,7 @@ void add_render(CLI::App& app, CommandLine& line) {
     sub->add_option("--display", o->display,
                     "HOST:PORT of a tev viewer that shows the picture as it grows")
         ->check(named);
+    o->out.add_to(*sub);
     sub->add_flag_callback(
            "--list-aovs",
            [] {
@@ -258,7 +268,6 @@ void add_render(CLI::App& app, CommandLine& line) {
            },
            "List the passes that --aov takes")
         ->trigger_on_parse();
-    sub->add_flag("--float", o->all_float, "All channels as 32-bit float");
     sub->add_option("--crypto-manifest", o->crypto_manifest,
                     "Cryptomatte's names in the header or in files beside it: embedded, sidecar")
         ->check(CLI::IsMember({"embedded", "sidecar"}));

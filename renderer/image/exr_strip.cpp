@@ -9,26 +9,24 @@
 namespace tessera {
 namespace {
 
-constexpr float kHalfMax = 65504.0f;
-
 struct ToFloat {
     using Value = float;
-    static float convert(float value, WriteReport&) { return value; }
+    static float convert(float value, float, WriteReport&) { return value; }
 };
 
 struct ToHalf {
     using Value = half;
-    static half convert(float value, WriteReport& report) {
-        if (std::abs(value) > kHalfMax) {
+    static half convert(float value, float limit, WriteReport& report) {
+        if (std::abs(value) > limit) {
             ++report.clamped;
-            value = std::copysign(kHalfMax, value);
+            value = std::copysign(limit, value);
         }
         return half(value);
     }
 };
 
 template <class To>
-void convert(const float* from, std::size_t stride, std::size_t count, char* to,
+void convert(const float* from, std::size_t stride, std::size_t count, char* to, float limit,
              WriteReport& report) {
     for (std::size_t i = 0; i < count; ++i) {
         float value = from[i * stride];
@@ -36,7 +34,7 @@ void convert(const float* from, std::size_t stride, std::size_t count, char* to,
             ++report.non_finite;
             value = 0;
         }
-        const typename To::Value stored = To::convert(value, report);
+        const typename To::Value stored = To::convert(value, limit, report);
         std::memcpy(to + i * sizeof stored, &stored, sizeof stored);
     }
 }
@@ -64,9 +62,9 @@ void ExrStrip::fill(int y0, int y1, WriteReport& report) {
         const float* from =
             channel.layer->pixels.data() + first * stride + static_cast<std::size_t>(channel.index);
         if (channel.half)
-            convert<ToHalf>(from, stride, count, plane(c), report);
+            convert<ToHalf>(from, stride, count, plane(c), channel.limit, report);
         else
-            convert<ToFloat>(from, stride, count, plane(c), report);
+            convert<ToFloat>(from, stride, count, plane(c), channel.limit, report);
     }
 }
 

@@ -14,7 +14,8 @@ struct ExrChannel {
     std::string name;  // in the file
     bool half = false;
     const Layer* layer = nullptr;
-    int index = 0;  // channel of the layer
+    int index = 0;        // channel of the layer
+    float limit = 65504;  // halves beyond it are clamped
 };
 
 class ExrStrip {
@@ -25,7 +26,7 @@ public:
     static constexpr int kMaxLines = 256;
 
     /// Converts lines y0 <= y < y1 (at most kMaxLines): non-finite values become 0, halves are
-    /// clamped to +-65504, both counted in report.
+    /// clamped to the channel's limit, both counted in report.
     void fill(int y0, int y1, WriteReport& report);
     /// Zeroes all planes.
     void clear();

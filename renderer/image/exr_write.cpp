@@ -4,20 +4,27 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
-#include <ImfInputFile.h>
+#include <ImfInputPart.h>
 #include <ImfIntAttribute.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <ImfThreading.h>
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <new>
+#include <set>
 
 #include "renderer/api/image.h"
 #include "renderer/core/parallel.h"
 #include "renderer/image/atomic_file.h"
+#include "renderer/image/exr_plan.h"
 #include "renderer/image/exr_strip.h"
 #include "renderer/image/working_space.h"
 
@@ -54,14 +61,45 @@ struct PutAttribute {
     }
 };
 
-Imf::Header make_header(const LayeredImage& image, const std::vector<ExrChannel>& channels) {
+Imf::Compression codec_of(ExrCompression c) {
+    switch (c) {
+        case ExrCompression::none:
+            return Imf::NO_COMPRESSION;
+        case ExrCompression::zips:
+            return Imf::ZIPS_COMPRESSION;
+        case ExrCompression::zip:
+            return Imf::ZIP_COMPRESSION;
+        case ExrCompression::piz:
+            return Imf::PIZ_COMPRESSION;
+        case ExrCompression::dwaa:
+            return Imf::DWAA_COMPRESSION;
+        case ExrCompression::dwab:
+            return Imf::DWAB_COMPRESSION;
+    }
+    return Imf::ZIP_COMPRESSION;
+}
+
+void put(const std::vector<std::pair<std::string, MetadataValue>>& metadata, Imf::Header& header) {
+    for (const auto& [name, value] : metadata) {
+        if (name.empty() || name.size() > kMaxName)
+            fail_bug("metadata name '" + name + "' must have 1 to 31 bytes");
+        if (header.find(name) != header.end()) fail_bug("metadata name '" + name + "' is taken");
+        std::visit(PutAttribute{header, name}, value);
+    }
+}
+
+Imf::Header make_header(const LayeredImage& image, const ExrFile& file, const ExrPart& part,
+                        float dwa_level) {
     const PixelWindow& w = image.window;
     const Imath::Box2i display({0, 0}, {image.width - 1, image.height - 1});
     const Imath::Box2i data({w.x0, w.y0}, {w.x1 - 1, w.y1 - 1});
     Imf::Header header(display, data);
-    header.compression() = Imf::ZIP_COMPRESSION;
+    header.compression() = codec_of(part.compression);
+    if (is_lossy(part.compression)) header.dwaCompressionLevel() = dwa_level;
     header.lineOrder() = Imf::INCREASING_Y;
-    for (const ExrChannel& channel : channels) {
+    for (const ExrChannel& channel : part.channels) {
+        if (channel.name.empty() || channel.name.size() > kMaxName)
+            fail_bug("channel name '" + channel.name + "' must have 1 to 31 bytes");
         if (header.channels().findChannel(channel.name))
             fail_bug("two channels named '" + channel.name + "'");
         header.channels().insert(channel.name, Imf::Channel(channel.half ? Imf::HALF : Imf::FLOAT));
@@ -71,36 +109,40 @@ Imf::Header make_header(const LayeredImage& image, const std::vector<ExrChannel>
         Imf::addChromaticities(
             header, Imf::Chromaticities({c[0], c[1]}, {c[2], c[3]}, {c[4], c[5]}, {c[6], c[7]}));
     }
-    for (const auto& [name, value] : image.metadata) {
-        if (name.empty() || name.size() > kMaxName)
-            fail_bug("metadata name '" + name + "' must have 1 to 31 bytes");
-        if (header.find(name) != header.end()) fail_bug("metadata name '" + name + "' is taken");
-        std::visit(PutAttribute{header, name}, value);
+    if (file.parts.size() > 1) {
+        header.setType(Imf::SCANLINEIMAGE);
+        header.setName(part.name);
+    }
+    if (&part == file.parts.data()) {
+        put(image.metadata, header);
+        put(file.metadata, header);
     }
     return header;
 }
 
-std::vector<ExrChannel> list_channels(const LayeredImage& image, bool all_float) {
+std::vector<Imf::Header> make_headers(const LayeredImage& image, const ExrFile& file,
+                                      float dwa_level) {
+    std::vector<Imf::Header> headers;
+    std::set<std::string> names;
+    for (const ExrPart& part : file.parts) {
+        if (!names.insert(part.name).second) fail_bug("two parts named '" + part.name + "'");
+        headers.push_back(make_header(image, file, part, dwa_level));
+    }
+    return headers;
+}
+
+void check_image(const LayeredImage& image) {
     const PixelWindow& w = image.window;
     if (image.width <= 0 || image.height <= 0) fail_bug("the frame is empty");
     if (w.x1 <= w.x0 || w.y1 <= w.y0) fail_bug("the pixel window is empty");
     const std::size_t pixels =
         static_cast<std::size_t>(w.width()) * static_cast<std::size_t>(w.height());
-    std::vector<ExrChannel> list;
+    if (image.layers.empty()) fail_bug("no channels");
     for (const Layer& layer : image.layers) {
+        if (layer.channels.empty()) fail_bug("layer '" + layer.name + "' has no channels");
         if (layer.pixels.size() != pixels * layer.channels.size())
             fail_bug("layer '" + layer.name + "' does not fill its window");
-        for (std::size_t i = 0; i < layer.channels.size(); ++i) {
-            const std::string& channel = layer.channels[i];
-            const std::string name = layer.name.empty() ? channel : layer.name + "." + channel;
-            if (channel.empty() || name.size() > kMaxName)
-                fail_bug("channel name '" + name + "' must have 1 to 31 bytes");
-            list.push_back(
-                {name, layer.kind == LayerKind::color && !all_float, &layer, static_cast<int>(i)});
-        }
     }
-    if (list.empty()) fail_bug("no channels");
-    return list;
 }
 
 /// The strip's planes as OpenEXR wants them: each base is where pixel (0, 0) would lie.
@@ -126,47 +168,91 @@ int thread_count(int asked) {
     return std::clamp(asked > 0 ? asked : available_threads().threads, 1, 16);
 }
 
-/// Re-opens the file and compares header and the first and last lines with what was meant. Each
-/// write was checked, so what is left to find is a file that a library or file system closed short
-/// or mixed up; the header, the complete offset table and both ends tell, at the cost of two
-/// chunks.
-void check_written(const AtomicFile& file, const Imf::Header& meant,
-                   const std::vector<ExrChannel>& channels, ExrStrip& strip) {
-    Imf::InputFile in(file.temp_path().c_str(), 0);
+/// Lines of a chunk.
+int chunk_lines(ExrCompression c) {
+    switch (c) {
+        case ExrCompression::none:
+        case ExrCompression::zips:
+            return 1;
+        case ExrCompression::zip:
+            return 16;
+        case ExrCompression::piz:
+        case ExrCompression::dwaa:
+            return 32;
+        case ExrCompression::dwab:
+            break;
+    }
+    return 256;
+}
+
+/// Compares the first and last lines with what was meant; of a lossy part only that they decode.
+void check_part(Imf::InputPart& in, const Imf::Header& meant, const ExrPart& part, ExrStrip& strip,
+                const std::string& target) {
     const Imf::Header& found = in.header();
-    if (!in.isComplete()) fail_output(file.target(), "read back incomplete");
+    if (!in.isComplete()) fail_output(target, "read back incomplete");
     if (found.dataWindow() != meant.dataWindow() ||
-        found.displayWindow() != meant.displayWindow() || !(found.channels() == meant.channels()))
-        fail_output(file.target(), "the header read back differs");
+        found.displayWindow() != meant.displayWindow() ||
+        found.compression() != meant.compression() || !(found.channels() == meant.channels()))
+        fail_output(target, "the header read back differs");
     const int y0 = meant.dataWindow().min.y;
     const int y1 = meant.dataWindow().max.y + 1;
-    constexpr int kChunk = 16;  // lines of a ZIP chunk
-    const int last = y0 + (y1 - 1 - y0) / kChunk * kChunk;
+    const int chunk = chunk_lines(part.compression);
+    const int last = y0 + (y1 - 1 - y0) / chunk * chunk;
     for (const int from : {y0, last}) {
-        const int to = std::min(from + kChunk, y1);
+        const int to = std::min(from + chunk, y1);
         WriteReport ignored;
         strip.clear();
         strip.fill(from, to, ignored);
         const std::vector<char> wanted = strip.bytes();
         strip.clear();
-        in.setFrameBuffer(frame_of(strip, channels, meant.dataWindow(), from));
+        in.setFrameBuffer(frame_of(strip, part.channels, meant.dataWindow(), from));
         in.readPixels(from, to - 1);
-        if (strip.bytes() != wanted) fail_output(file.target(), "the pixels read back differ");
+        if (!is_lossy(part.compression) && strip.bytes() != wanted)
+            fail_output(target, "the pixels read back differ");
     }
 }
 
-void write_pixels(AtomicFile& file, const Imf::Header& header,
-                  const std::vector<ExrChannel>& channels, ExrStrip& strip, int threads,
-                  WriteReport& report) {
-    Stream stream(file);
-    Imf::OutputFile out(stream, header, threads);
-    const int end = header.dataWindow().max.y + 1;
-    for (int y = header.dataWindow().min.y; y < end;) {
-        const int to = std::min(y + ExrStrip::kMaxLines, end);
+/// Re-opens the file. Each write was checked, so what is left to find is a file that a library or
+/// file system closed short or mixed up; the headers, the complete offset tables and both ends of
+/// each part tell, at the cost of two chunks.
+void check_written(const AtomicFile& file, const std::vector<Imf::Header>& meant,
+                   const ExrFile& plan, const PixelWindow& window) {
+    Imf::MultiPartInputFile in(file.temp_path().c_str(), 0);
+    if (in.parts() != static_cast<int>(meant.size()))
+        fail_output(file.target(), "read back with another number of parts");
+    for (std::size_t i = 0; i < meant.size(); ++i) {
+        Imf::InputPart part(in, static_cast<int>(i));
+        ExrStrip strip(plan.parts[i].channels, window);
+        check_part(part, meant[i], plan.parts[i], strip, file.target());
+    }
+}
+
+template <class Out>
+void write_part(Out& out, const ExrPart& part, const PixelWindow& window, WriteReport& report) {
+    ExrStrip strip(part.channels, window);
+    const Imath::Box2i box({window.x0, window.y0}, {window.x1 - 1, window.y1 - 1});
+    for (int y = window.y0; y < window.y1;) {
+        const int to = std::min(y + ExrStrip::kMaxLines, window.y1);
         strip.fill(y, to, report);
-        out.setFrameBuffer(frame_of(strip, channels, header.dataWindow(), y));
+        out.setFrameBuffer(frame_of(strip, part.channels, box, y));
         out.writePixels(to - y);
         y = to;
+    }
+}
+
+void write_file(AtomicFile& file, const std::vector<Imf::Header>& headers, const ExrFile& plan,
+                const PixelWindow& window, int threads, WriteReport& report) {
+    Stream stream(file);
+    if (headers.size() == 1) {
+        Imf::OutputFile out(stream, headers[0], threads);
+        write_part(out, plan.parts[0], window, report);
+        return;
+    }
+    Imf::MultiPartOutputFile out(stream, headers.data(), static_cast<int>(headers.size()), false,
+                                 threads);
+    for (std::size_t i = 0; i < headers.size(); ++i) {
+        Imf::OutputPart part(out, static_cast<int>(i));
+        write_part(part, plan.parts[i], window, report);
     }
 }
 
@@ -176,17 +262,24 @@ WriteReport write_exr(const LayeredImage& image, const std::string& path,
                       const WriteOptions& options) {
     WriteReport report;
     try {
-        const std::vector<ExrChannel> channels = list_channels(image, options.all_float);
-        const Imf::Header header = make_header(image, channels);
-        AtomicFile file(path);
+        check_image(image);
+        const std::vector<ExrFile> plans = plan_exr(image, path, options);
+        std::vector<std::vector<Imf::Header>> headers;
+        for (const ExrFile& plan : plans)
+            headers.push_back(make_headers(image, plan, options.dwa_level));
         const int threads = thread_count(options.threads);
         // The pool is shared by the process: it grows and never shrinks under another writer.
         if (Imf::globalThreadCount() < threads) Imf::setGlobalThreadCount(threads);
-        ExrStrip strip(channels, image.window);
-        write_pixels(file, header, channels, strip, threads, report);
-        report.bytes = file.finish();
-        check_written(file, header, channels, strip);
-        file.commit();
+        std::vector<std::unique_ptr<AtomicFile>> files;
+        for (std::size_t i = 0; i < plans.size(); ++i) {
+            files.push_back(std::make_unique<AtomicFile>(plans[i].path));
+            AtomicFile& file = *files.back();
+            write_file(file, headers[i], plans[i], image.window, threads, report);
+            report.bytes += file.finish();
+            check_written(file, headers[i], plans[i], image.window);
+            report.files.push_back(plans[i].path);
+        }
+        for (const auto& file : files) file->commit();
     } catch (const Error&) {
         throw;
     } catch (const std::bad_alloc&) {

@@ -42,7 +42,8 @@ std::string subject_of(const std::string& kind, const Value& table, std::size_t 
 
 // Each part reads its tables of the document, and lists their keys for the root table.
 void read_settings(const Value& document,
-                   SceneReader& reader);  // camera, film, render, environment
+                   SceneReader& reader);  // camera, film, output, render, environment
+void read_output(const Value& table, SceneReader& reader);
 void load_meshes(const Value& document, SceneReader& reader,
                  ShapeNames& names);  // the files of [[mesh]]
 void read_materials(const Value& document,
@@ -52,6 +53,7 @@ void read_lights(const Value& document, SceneReader& reader);
 
 const KeyList& camera_keys();
 const KeyList& film_keys();
+const KeyList& output_keys();
 const KeyList& render_keys();
 const KeyList& environment_keys();
 const KeyList& sky_keys();

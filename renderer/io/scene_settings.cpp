@@ -56,6 +56,10 @@ const KeySet<FilmDesc>& film_part() {
                  key("crop", &F::crop,
                      "Only these pixels: [x0, y0, x1, y1], x1 and y1 excluded, y downward.",
                      {.low = 0, .high = 65536}),
+                 key("overscan", &F::overscan,
+                     "Share of width and height rendered beyond each edge of the frame.", kUnit),
+                 key("overscan_px", &F::overscan_px,
+                     "The same in pixels, one number for all edges.", {.low = 0, .high = 16384}),
                  choice("filter", &F::filter, {"box", "triangle", "gaussian", "blackman_harris"},
                         "Pixel filter."),
                  key("filter_width_px", &F::filter_width_px, "Full width of the filter in pixels.",
@@ -199,6 +203,10 @@ void read_film(const Value& table, SceneReader& reader) {
         at.problems.error(found->loc,
                           "film: resolution is " + size + ", must be at most 2^30 pixels in all");
     }
+    if (film.overscan > 0 && film.overscan_px > 0) {
+        at.problems.error(table.find("overscan_px")->loc,
+                          "film: give overscan or overscan_px, not both");
+    }
     if (!film.crop) return;
     const PixelWindow& crop = *film.crop;
     const bool in_frame = crop.x1 <= film.width && crop.y1 <= film.height;
@@ -220,6 +228,7 @@ void read_render(const Value& table, SceneReader& reader) {
 void read_settings(const Value& document, SceneReader& reader) {
     if (const Value* table = document.find("camera")) read_camera(*table, reader);
     if (const Value* table = document.find("film")) read_film(*table, reader);
+    if (const Value* table = document.find("output")) read_output(*table, reader);
     if (const Value* table = document.find("render")) read_render(*table, reader);
     if (const Value* table = document.find("environment")) read_environment(*table, reader);
     if (const Value* table = document.find("sky")) read_sky(*table, reader);

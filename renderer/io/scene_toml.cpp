@@ -31,6 +31,7 @@ const KeySet<Root>& root_rows() {
              table_row("camera", Kind::table, {&camera_keys()},
                        "The camera; absent, it frames the scene by itself."),
              table_row("film", Kind::table, {&film_keys()}, "The picture."),
+             table_row("output", Kind::table, {&output_keys()}, "The file it is written to."),
              table_row("render", Kind::table, {&render_keys()}, "How it is made."),
              table_row("environment", Kind::table, {&environment_keys()}, "Light from all around."),
              table_row("sky", Kind::table, {&sky_keys()}, "A clear sky with its sun."),
