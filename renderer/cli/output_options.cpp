@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cstdlib>
 
-#include "renderer/image/pass_names.h"
+#include "renderer/film/pass.h"
 
 namespace tessera {
 namespace {
@@ -90,11 +90,12 @@ void check_codec(const SceneDesc& scene) {
     if (o.all_float)
         usage("--compression " + codec + ": stores colours as halves, --float has no use with it");
     if (o.exr != ExrLayout::single) return;
-    const auto& aovs = scene.film.aovs;
-    const auto data = std::find_if_not(aovs.begin(), aovs.end(), is_colour_pass);
-    if (!aovs.empty() && data == aovs.end()) return;
-    usage("--compression " + codec + ": would damage " +
-          (aovs.empty() ? "Z, N and P" : "'" + *data + "'") +
+    const Passes passes = choose_passes(scene.film.aovs, {"default"}, scene.film.loc);
+    const auto data = std::find_if(passes.begin(), passes.end(),
+                                   [](const Pass& p) { return p.kind == LayerKind::data; });
+    if (data == passes.end()) return;
+    usage("--compression " + codec + ": would damage '" + (data->name.empty() ? "Z" : data->name) +
+          "'" +
           ", and a single-part file has one codec; use --exr multipart or split, where data stays "
           "lossless, or ask for colour passes only (--aov)");
 }

@@ -156,12 +156,12 @@ RenderResult render_with_progress(const Scene& scene, const RenderOptions& o,
     return result;
 }
 
-// The window that was asked for, or the whole frame where it is padded (and overscan with it).
-void fit_to_frame(LayeredImage& image, PixelWindow window, bool pad) {
-    if (pad)
-        window = {std::min(window.x0, 0), std::min(window.y0, 0), std::max(window.x1, image.width),
-                  std::max(window.y1, image.height)};
-    if (window != image.window) image = reframe(image, window);
+// The whole frame, and overscan with it, where less was rendered.
+void pad_to_frame(LayeredImage& image) {
+    const PixelWindow& w = image.window;
+    const PixelWindow whole{std::min(w.x0, 0), std::min(w.y0, 0), std::max(w.x1, image.width),
+                            std::max(w.y1, image.height)};
+    if (whole != w) image = reframe(image, whole);
 }
 
 std::string names(const std::vector<std::string>& files) {
@@ -190,8 +190,7 @@ int run_render(RenderOptions options, const std::string& command) {
     check_codec(desc);
     const OutputDesc output = desc.output;
     if (output.exr == ExrLayout::split) check_split_spares(outputs_of(options)[0], desc);
-    const FrameWindow window = frame_window(desc, options.scene.tile);
-    desc.film.crop = window.render;
+    desc.film.crop = frame_window(desc);
     if (!options.preview.empty()) check_view(desc.film.working_space, options.view);
     const ScenePtr scene = build_scene(std::move(desc), options.scene.build_options());
     say_what_was_built(describe(*scene), load_s, options.quiet);
@@ -199,7 +198,7 @@ int run_render(RenderOptions options, const std::string& command) {
     ProgressPrinter printer(progress_style(options));
     const auto display = open_display(scene->film(), options, printer);
     const auto write = [&](RenderResult& r) {
-        fit_to_frame(r.image, window.write, output.crop_pad);
+        if (output.crop_pad) pad_to_frame(r.image);
         describe_picture(r.image, *scene, r.stats, command, output.deterministic_metadata);
         if (options.crypto_manifest == "sidecar")
             write_manifests(move_manifests(r.image.metadata, options.output));

@@ -11,7 +11,7 @@
 #include <set>
 
 #include "renderer/api/image.h"
-#include "renderer/core/murmur.h"
+#include "renderer/core/murmur3.h"
 #include "tests/support/exr_bytes.h"
 #include "tests/support/temp_folder.h"
 
@@ -64,7 +64,7 @@ ExrBytes with_matte() {
     ExrBytes file = clean();
     add(file, "CryptoObject00", "RGBA", 0, kFloat);
     file.channel("CryptoObject00.R").value =
-        constant(std::bit_cast<float>(cryptomatte_bits("torus")));
+        constant(std::bit_cast<float>(cryptomatte_id("torus")));
     file.channel("CryptoObject00.G").value = constant(0.5f);
     const std::string key = "cryptomatte/3ae39a5/";
     file.attribute(key + "name", "CryptoObject");
