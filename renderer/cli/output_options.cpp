@@ -90,7 +90,7 @@ void check_codec(const SceneDesc& scene) {
     if (o.all_float)
         usage("--compression " + codec + ": stores colours as halves, --float has no use with it");
     if (o.exr != ExrLayout::single) return;
-    const Passes passes = choose_passes(scene.film.aovs, {"default"}, scene.film.loc);
+    const Passes passes = choose_passes(scene.film.aovs, {"default"}, scene.film.aovs_loc);
     const auto data = std::find_if(passes.begin(), passes.end(),
                                    [](const Pass& p) { return p.kind == LayerKind::data; });
     if (data == passes.end()) return;
