@@ -6,6 +6,7 @@
 #include <set>
 
 #include "renderer/core/warp.h"
+#include "renderer/lights/mesh_lights.h"
 
 namespace tessera {
 namespace {
@@ -114,6 +115,15 @@ LaneMask LightSet::sample(LaneMask lanes, const LightReference (&refs)[kLanes],
             const int first = std::countr_zero(rest);
             const Light& light = lights_[picks[first].index];
             LaneMask same = 1u << first;
+            if (std::holds_alternative<MeshLight>(light)) {
+                const Light* chosen[kLanes];
+                for (LaneMask m = rest; m != 0; m &= m - 1) {
+                    const int i = std::countr_zero(m);
+                    chosen[i] = &lights_[picks[i].index];
+                }
+                made |= sample_mesh_lights(rest, chosen, refs, u, out);
+                break;
+            }
             const auto* sky = std::get_if<EnvironmentLight>(&light);
             const auto* sun = std::get_if<DistantLight>(&light);
             if (sky || sun) {
