@@ -199,8 +199,9 @@ private:
 
         // Emission, weighed against light sampling having found it.
         if (!program || program->facts().emissive) {
-            const Color e = program ? program->emission(shade_in_[i], scene_.textures())
-                                    : light_radiance(scene_.lights()[s.light], d, s.ng);
+            const Color e = program
+                                ? program->emission(shade_in_[i], scene_.textures(), -dot(s.ng, d))
+                                : light_radiance(scene_.lights()[s.light], d, s.ng);
             float weight = 1.0f;
             if (bsdf_pdf_[i] > 0.0f && s.light >= 0) {
                 weight = mis_power(bsdf_pdf_[i], scene_.lights().pdf(s.light, {from_[i].p}, d, s.p,
@@ -286,6 +287,7 @@ private:
             if constexpr (kMedia<F>) {
                 if (inside_[i].leaves_body()) return lobes_.push(i, DiffuseLobe{}, Color(1.0f));
                 view.eta = inside_[i].eta();
+                view.finest = kSafety * max_component(p_error_[i]);
                 view.coat = coat_frame<F>(
                     surface_[i], program, shade_in_[i], scene_.textures(), view.front,
                     frame_.shading(i), frame_.shading(i).to_local(frame_.guard[i]), lobes_.wo[i]);
@@ -436,16 +438,21 @@ private:
     }
 
     // The next rays. Returns the lanes whose ray leaves on the side that the lobe meant, with
-    // something to carry.
+    // something to carry. What a bumpy mirror or boundary sends to the wrong side is turned to the
+    // right one, so that it is not lost: light that light sampling could not have found.
     LaneMask leave_surfaces() noexcept {
         LaneFlags leaves;
         for (int i = 0; i < kLanes; ++i) {
-            const Vec3f local = scattered_.wi[i], wi = frame_.shading(i).to_world(local);
+            const Vec3f local = scattered_.wi[i], meant = frame_.shading(i).to_world(local);
+            const bool same = same_side(meant, local, frame_.guard[i]);
+            const bool turns = (scattered_.pdf[i] == 0.0f) | is_refracted(scattered_.cls[i]);
+            const bool turned = !same & turns;
+            const Vec3f wi = pick(turned, reflect_at(meant, frame_.guard[i]), meant);
+            bsdf_pdf_[i] = pick(turned, 0.0f, bsdf_pdf_[i]);
             next_o_.set(i, ray_origin(p_[i], p_error_[i], frame_.ng[i], frame_.lift[i], wi, local));
             next_d_.set(i, wi);
-            const bool same = same_side(wi, local, frame_.guard[i]);
             const bool carries = max_component(throughput_[i]) > 0.0f;
-            leaves.is[i] = same & carries;
+            leaves.is[i] = (same | turned) & carries;
         }
         return leaves.mask();
     }

@@ -168,6 +168,13 @@ inline bool same_side(Vec3f wi_world, Vec3f wi_local, Vec3f guard) {
     return (dot(wi_world, guard) > 0.0f) == (wi_local.z > 0.0f);
 }
 
+/// wi's mirror image on the surface's other side.
+inline Vec3f reflect_at(Vec3f wi, Vec3f guard) { return wi - guard * (2.0f * dot(wi, guard)); }
+
+inline bool is_refracted(std::uint32_t cls) {
+    return cls == static_cast<std::uint32_t>(LobeClass::transmission);
+}
+
 /// Where a ray along wi starts: reflected light at the surface that smooth normals pretend.
 inline Vec3f ray_origin(Vec3f p, Vec3f p_error, Vec3f ng, Vec3f lift, Vec3f wi, Vec3f wi_local) {
     return offset_origin(p + pick(wi_local.z > 0.0f, lift, Vec3f{}), p_error, ng, wi);
