@@ -245,6 +245,9 @@ private:
             if (leaves_body(i)) viewer = ray_[i].d;
             const bool front = dot(s.ng, viewer) >= 0.0f;
             frame_.front.is[i] = front;
+            // Bent normals would keep light that is reflected inside along the surface for good:
+            // there it is turned where it comes out on the wrong side.
+            frame_.within.is[i] = !front && scene_.program(s.material).facts().glass;
             frame_.ng.set(i, front ? s.ng : -s.ng);
             frame_.even.set(i, front ? s.ns : -s.ns);
             frame_.lift.set(i, front ? s.lift : Vec3f{});
@@ -257,7 +260,8 @@ private:
         for (int i = 0; i < kLanes; ++i) {
             const Vec3f even = frame_.even[i];
             const Vec3f guard = pick(is_lifted(frame_.lift[i]), even, frame_.ng[i]);
-            const Frame f(consistent_normal(ns[i], guard, wo[i]));
+            const Frame f(pick(frame_.within.is[i] != 0, seen_normal(ns[i], wo[i]),
+                               consistent_normal(ns[i], guard, wo[i])));
             frame_.guard.set(i, guard);
             frame_.set_shading(i, f);
             lobes_.wo.set(i, f.to_local(wo[i]));
@@ -445,7 +449,8 @@ private:
         for (int i = 0; i < kLanes; ++i) {
             const Vec3f local = scattered_.wi[i], meant = frame_.shading(i).to_world(local);
             const bool same = same_side(meant, local, frame_.guard[i]);
-            const bool turns = (scattered_.pdf[i] == 0.0f) | is_refracted(scattered_.cls[i]);
+            const bool turns = (scattered_.pdf[i] == 0.0f) | is_refracted(scattered_.cls[i]) |
+                               (frame_.within.is[i] != 0);
             const bool turned = !same & turns;
             const Vec3f wi = pick(turned, reflect_at(meant, frame_.guard[i]), meant);
             bsdf_pdf_[i] = pick(turned, 0.0f, bsdf_pdf_[i]);

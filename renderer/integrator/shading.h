@@ -36,6 +36,7 @@ struct FacingFrames {
     Vec3Lanes s, t, n;  // the shading frames' axes
     Vec3Lanes ng, even, guard, lift;
     LaneFlags front;
+    LaneFlags within;  // seen from within a body of glass
 
     Frame shading(int i) const { return {s[i], t[i], n[i]}; }
     void set_shading(int i, const Frame& f) { s.set(i, f.s), t.set(i, f.t), n.set(i, f.n); }
@@ -43,13 +44,18 @@ struct FacingFrames {
 
 inline bool is_lifted(Vec3f lift) { return length2(lift) > 0.0f; }
 
-/// A shading normal that wo cannot see is bent until it can, just; one in which the mirror image
-/// would lie below the surface, until it lies above. Keller et al., "The Iray Light Transport
-/// Simulation and Rendering System", 2017, section A.3. guard: of the surface.
-inline Vec3f consistent_normal(Vec3f ns, Vec3f guard, Vec3f wo) {
+/// A shading normal that wo cannot see is bent until it can, just.
+inline Vec3f seen_normal(Vec3f ns, Vec3f wo) {
     constexpr float kGrazing = 1e-3f;
     const float c = dot(ns, wo);
-    const Vec3f n = pick(c >= kGrazing, ns, normalize(ns + wo * (kGrazing - c)));
+    return pick(c >= kGrazing, ns, normalize(ns + wo * (kGrazing - c)));
+}
+
+/// Besides, one in which the mirror image would lie below the surface is bent until it lies above.
+/// Keller et al., "The Iray Light Transport
+/// Simulation and Rendering System", 2017, section A.3. guard: of the surface.
+inline Vec3f consistent_normal(Vec3f ns, Vec3f guard, Vec3f wo) {
+    const Vec3f n = seen_normal(ns, wo);
     const Vec3f mirrored = n * (2.0f * dot(n, wo)) - wo;
     const float least = std::clamp(0.9f * dot(guard, wo), 1e-4f, 0.02f);
     const float lift = least - dot(mirrored, guard);
@@ -111,8 +117,9 @@ FacingFrame facing_frame(const SurfacePoint& s, const ShaderProgram& program, co
     f.even = f.front ? s.ns : -s.ns;
     f.lift = f.front ? s.lift : Vec3f{};
     f.guard = is_lifted(f.lift) ? f.even : f.ng;
-    const Vec3f n =
-        consistent_normal(facing_normal<F>(s, program, in, textures, f.front), f.guard, wo);
+    const Vec3f facing = facing_normal<F>(s, program, in, textures, f.front);
+    const bool within = !f.front && program.facts().glass;
+    const Vec3f n = within ? seen_normal(facing, wo) : consistent_normal(facing, f.guard, wo);
     f.shading = frame_follows_texture<F>(program) ? frame_in_texture<F>(n, s, program, in, textures)
                                                   : Frame(n);
     f.wo = f.shading.to_local(wo);
