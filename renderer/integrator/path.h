@@ -245,8 +245,6 @@ private:
             if (leaves_body(i)) viewer = ray_[i].d;
             const bool front = dot(s.ng, viewer) >= 0.0f;
             frame_.front.is[i] = front;
-            // Bent normals would keep light that is reflected inside along the surface for good:
-            // there it is turned where it comes out on the wrong side.
             frame_.within.is[i] = !front && scene_.program(s.material).facts().glass;
             frame_.ng.set(i, front ? s.ng : -s.ng);
             frame_.even.set(i, front ? s.ns : -s.ns);
@@ -260,7 +258,8 @@ private:
         for (int i = 0; i < kLanes; ++i) {
             const Vec3f even = frame_.even[i];
             const Vec3f guard = pick(is_lifted(frame_.lift[i]), even, frame_.ng[i]);
-            const Frame f(pick(frame_.within.is[i] != 0, seen_normal(ns[i], wo[i]),
+            const Frame f(pick(frame_.within.is[i] != 0,
+                               consistent_normal_within(ns[i], guard, wo[i]),
                                consistent_normal(ns[i], guard, wo[i])));
             frame_.guard.set(i, guard);
             frame_.set_shading(i, f);
@@ -421,7 +420,7 @@ private:
             each(alive_, [&](int i) {
                 if (!leaves_body(i))
                     scatter_passes<F>(*passes_, i, lobes_, apart_, scattered_.wi[i],
-                                      bsdf_pdf_[i] == 0.0f);
+                                      scattered_.pdf[i] == 0.0f);
             });
         }
         if constexpr (F.apart) read_reflection_maps();

@@ -44,22 +44,25 @@ struct FacingFrames {
 
 inline bool is_lifted(Vec3f lift) { return length2(lift) > 0.0f; }
 
-/// A shading normal that wo cannot see is bent until it can, just.
-inline Vec3f seen_normal(Vec3f ns, Vec3f wo) {
-    constexpr float kGrazing = 1e-3f;
-    const float c = dot(ns, wo);
-    return pick(c >= kGrazing, ns, normalize(ns + wo * (kGrazing - c)));
-}
-
-/// Besides, one in which the mirror image would lie below the surface is bent until it lies above.
-/// Keller et al., "The Iray Light Transport
+/// A shading normal that wo cannot see is bent until it can, just; one in which the mirror image
+/// would lie below the surface, until it lies above. Keller et al., "The Iray Light Transport
 /// Simulation and Rendering System", 2017, section A.3. guard: of the surface.
 inline Vec3f consistent_normal(Vec3f ns, Vec3f guard, Vec3f wo) {
-    const Vec3f n = seen_normal(ns, wo);
+    constexpr float kGrazing = 1e-3f;
+    const float c = dot(ns, wo);
+    const Vec3f n = pick(c >= kGrazing, ns, normalize(ns + wo * (kGrazing - c)));
     const Vec3f mirrored = n * (2.0f * dot(n, wo)) - wo;
     const float least = std::clamp(0.9f * dot(guard, wo), 1e-4f, 0.02f);
     const float lift = least - dot(mirrored, guard);
     return pick(lift > 0.0f, normalize(normalize(mirrored + guard * lift) + wo), n);
+}
+
+/// The same from within glass, where normals bent so would lead what is reflected along the surface
+/// for good: one that will not do is replaced by the surface's own.
+inline Vec3f consistent_normal_within(Vec3f ns, Vec3f guard, Vec3f wo) {
+    constexpr float kGrazing = 1e-3f;
+    const float c = dot(ns, wo), mirrored = 2.0f * c * dot(ns, guard) - dot(wo, guard);
+    return pick((c >= kGrazing) & (mirrored > 0.0f), ns, guard);
 }
 
 /// The shading normal on the viewer's side, maps and bumps applied.
@@ -119,7 +122,8 @@ FacingFrame facing_frame(const SurfacePoint& s, const ShaderProgram& program, co
     f.guard = is_lifted(f.lift) ? f.even : f.ng;
     const Vec3f facing = facing_normal<F>(s, program, in, textures, f.front);
     const bool within = !f.front && program.facts().glass;
-    const Vec3f n = within ? seen_normal(facing, wo) : consistent_normal(facing, f.guard, wo);
+    const Vec3f n = within ? consistent_normal_within(facing, f.guard, wo)
+                           : consistent_normal(facing, f.guard, wo);
     f.shading = frame_follows_texture<F>(program) ? frame_in_texture<F>(n, s, program, in, textures)
                                                   : Frame(n);
     f.wo = f.shading.to_local(wo);

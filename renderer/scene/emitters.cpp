@@ -152,8 +152,7 @@ struct EmitterBuilder {
             add(SphereLight{s.center, s.radius, radiance, asked}, surface(material));
         } else {
             const Disc& d = geometry.discs[placed.shape];
-            add(DiscLight{d.center, d.normal, d.radius, radiance, true, asked},
-                surface(material));
+            add(DiscLight{d.center, d.normal, d.radius, radiance, true, asked}, surface(material));
         }
     }
 
