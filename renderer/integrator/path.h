@@ -258,9 +258,7 @@ private:
         for (int i = 0; i < kLanes; ++i) {
             const Vec3f even = frame_.even[i];
             const Vec3f guard = pick(is_lifted(frame_.lift[i]), even, frame_.ng[i]);
-            const Frame f(pick(frame_.within.is[i] != 0,
-                               consistent_normal_within(ns[i], guard, wo[i]),
-                               consistent_normal(ns[i], guard, wo[i])));
+            const Frame f(frame_.bent_normal(i, ns[i], guard, wo[i]));
             frame_.guard.set(i, guard);
             frame_.set_shading(i, f);
             lobes_.wo.set(i, f.to_local(wo[i]));
@@ -331,8 +329,7 @@ private:
         });
     }
 
-    // Shadow rays, and the lights as the surfaces' frames see them. Returns the lanes on whose side
-    // of the surface the light is.
+    // Shadow rays; the lights as the frames see them. Returns the lanes on whose side the light is.
     LaneMask aim_at_lights() noexcept {
         LaneFlags faced;
         for (int i = 0; i < kLanes; ++i) {
@@ -440,23 +437,17 @@ private:
         }
     }
 
-    // The next rays. Returns the lanes whose ray leaves on the side that the lobe meant, with
-    // something to carry. What a bumpy mirror or boundary sends to the wrong side is turned to the
-    // right one, so that it is not lost: light that light sampling could not have found.
+    // The next rays. Returns the lanes whose ray has something to carry on the side it was meant
+    // for.
     LaneMask leave_surfaces() noexcept {
         LaneFlags leaves;
         for (int i = 0; i < kLanes; ++i) {
-            const Vec3f local = scattered_.wi[i], meant = frame_.shading(i).to_world(local);
-            const bool same = same_side(meant, local, frame_.guard[i]);
-            const bool turns = (scattered_.pdf[i] == 0.0f) | is_refracted(scattered_.cls[i]) |
-                               (frame_.within.is[i] != 0);
-            const bool turned = !same & turns;
-            const Vec3f wi = pick(turned, reflect_at(meant, frame_.guard[i]), meant);
-            bsdf_pdf_[i] = pick(turned, 0.0f, bsdf_pdf_[i]);
-            next_o_.set(i, ray_origin(p_[i], p_error_[i], frame_.ng[i], frame_.lift[i], wi, local));
-            next_d_.set(i, wi);
-            const bool carries = max_component(throughput_[i]) > 0.0f;
-            leaves.is[i] = (same | turned) & carries;
+            const Leaving to = leave_surface(i, frame_, scattered_);
+            bsdf_pdf_[i] = pick(to.turned, 0.0f, bsdf_pdf_[i]);
+            next_o_.set(i, ray_origin(p_[i], p_error_[i], frame_.ng[i], frame_.lift[i], to.wi,
+                                      scattered_.wi[i]));
+            next_d_.set(i, to.wi);
+            leaves.is[i] = to.leaves & (max_component(throughput_[i]) > 0.0f);
         }
         return leaves.mask();
     }
