@@ -357,7 +357,7 @@ private:
                                 light_.p[i], light_.n[i], light_.wi[i]));
     }
 
-    // What the lights give if nothing is in the way. Returns the lanes that it is worth a ray for.
+    // What the lights give if nothing is in the way. Returns the lanes that are worth a ray.
     LaneMask weigh_lights(LaneMask lanes) noexcept {
         LaneFlags lit;
         for (int i = 0; i < kLanes; ++i) {
