@@ -340,8 +340,7 @@ private:
             shadow_o_.set(i, o);
             shadow_d_.set(
                 i, {infinite ? wi.x : end.x, infinite ? wi.y : end.y, infinite ? wi.z : end.z});
-            // The end itself is not in the way.
-            shadow_t_max_[i] = infinite ? kInfinity : 0x1.fffffcp-1f;
+            shadow_t_max_[i] = infinite ? kInfinity : 0x1.fffffcp-1f;  // the end is not in the way
             wi_.set(i, local);
             faced.is[i] =
                 same_side(wi, local, frame_.guard[i]) && (F.transmission || local.z > 0.0f);
