@@ -243,7 +243,7 @@ double light_power(const Light& light, double scene_radius, double mesh_emission
             // A constant sky is found best by the rays that surfaces send anyway.
             if (l.map.width == 0) return 0;
             // The table's weights carry the sine; their mean over the sphere is mean * pi / 2.
-            const double radiance = l.table.mean() * kPiD / 2 * mean_of(l.map.scale);
+            const double radiance = l.mean * kPiD / 2 * mean_of(l.map.scale);
             return kPiD * disc * radiance;
         }
     };
