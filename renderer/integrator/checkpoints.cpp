@@ -1,0 +1,106 @@
+#include "renderer/integrator/checkpoints.h"
+
+#include <algorithm>
+#include <chrono>
+#include <new>
+#include <system_error>
+
+#include "renderer/api/error.h"
+#include "renderer/film/film_file.h"
+
+namespace tessera {
+
+Checkpoints::Checkpoints(std::string path, double every_s,
+                         std::function<void(const std::string&)> warn)
+    : path_(std::move(path)), every_s_(every_s), warn_(std::move(warn)) {
+    if (path_.empty()) return;
+    try {
+        thread_ = std::thread([this] { run(); });
+    } catch (const std::system_error&) {
+        if (warn_) warn_(path_ + ": no thread to be had; written only at the end");
+    }
+}
+
+Checkpoints::~Checkpoints() { stop(); }
+
+void Checkpoints::stop() {
+    {
+        const std::lock_guard lock(mutex_);
+        stop_ = true;
+    }
+    wake_.notify_all();
+    if (thread_.joinable()) thread_.join();
+    wanted_ = false;
+}
+
+void Checkpoints::run() {
+    std::unique_lock lock(mutex_);
+    const auto every = std::chrono::duration<double>(every_s_);
+    while (!wake_.wait_for(lock, every, [&] { return stop_; })) {
+        wanted_ = true;
+        wake_.wait(lock, [&] { return stop_ || given_; });
+        if (!given_) return;
+        given_ = false;
+        if (!copied_) continue;
+        lock.unlock();
+        write(copies_, header_);
+        lock.lock();
+    }
+}
+
+void Checkpoints::start(Film& film, FilmHeader header) {
+    const bool copied = copy(film);
+    if (!copied) write(film.arrays(), header);
+    {
+        const std::lock_guard lock(mutex_);
+        wanted_ = false;
+        header_ = std::move(header);
+        copied_ = copied;
+        given_ = true;
+    }
+    wake_.notify_all();
+}
+
+void Checkpoints::finish(Film& film, const FilmHeader& header) {
+    if (path_.empty()) return;
+    stop();
+    write(film.arrays(), header);
+}
+
+bool Checkpoints::copy(Film& film) {
+    const std::vector<Film::Array> arrays = film.arrays();
+    try {
+        if (memory_.empty()) {
+            for (const Film::Array& a : arrays) {
+                memory_.push_back(std::make_unique_for_overwrite<std::byte[]>(a.bytes.size()));
+                copies_.push_back({a.name, {memory_.back().get(), a.bytes.size()}});
+                bytes_ += a.bytes.size();
+            }
+        }
+    } catch (const std::bad_alloc&) {
+        memory_.clear(), copies_.clear(), bytes_ = 0;
+        return false;
+    }
+    for (std::size_t i = 0; i < arrays.size(); ++i)
+        std::copy(arrays[i].bytes.begin(), arrays[i].bytes.end(), copies_[i].bytes.begin());
+    return true;
+}
+
+void Checkpoints::write(const std::vector<Film::Array>& arrays, const FilmHeader& header) {
+    std::string failure;
+    try {
+        write_film_file(path_, header, arrays);
+        ++written_;
+    } catch (const std::bad_alloc&) {
+        failure = path_ + ": cannot write: out of memory";
+    } catch (const std::exception& e) {
+        failure = e.what();
+    }
+    failed_ += !failure.empty();
+    // The same trouble every minute of a night is told once.
+    if (warn_ && !failure.empty() && failure != last_failure_)
+        warn_("checkpoint: " + failure + "; the render goes on");
+    last_failure_ = failure;
+}
+
+}  // namespace tessera
