@@ -3,25 +3,29 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <numeric>
 #include <optional>
 
 #include <fmt/format.h>
 
 #include "renderer/cli/commands.h"
+#include "renderer/cli/describe_picture.h"
 #include "renderer/cli/output_check.h"
+#include "renderer/cli/output_options.h"
+#include "renderer/cli/picture_files.h"
 #include "renderer/core/log.h"
 #include "renderer/film/film_file.h"
 #include "renderer/film/film_parts.h"
+#include "renderer/film/mattes.h"
 
 namespace tessera {
 namespace {
 
 struct MergeOptions {
     std::vector<std::string> parts;
-    std::string output, preview, view;
+    std::string output, preview, view, crypto_manifest = "embedded";
+    OutputOptions out;
     std::optional<int> spp;
-    bool partial = false, all_float = false, quiet = false;
+    bool partial = false, quiet = false;
 };
 
 struct Part {
@@ -112,23 +116,6 @@ bool check(const std::vector<Part>& parts, const std::vector<SampleBox>& boxes,
     return false;
 }
 
-void describe_in_header(LayeredImage& image, const FilmHeader& h, bool complete,
-                        const std::string& command) {
-    auto& m = image.metadata;
-    m.emplace_back("tessera/version", h.version);
-    m.emplace_back("tessera/scene", h.scene);
-    m.emplace_back("tessera/sceneHash", h.scene_hash);
-    m.emplace_back("tessera/spp", static_cast<int>(h.most));
-    m.emplace_back("tessera/seed", std::to_string(h.seed));
-    if (h.first_sample > 0) m.emplace_back("tessera/firstSample", h.first_sample);
-    m.emplace_back("tessera/seconds", static_cast<float>(h.seconds));
-    m.emplace_back("tessera/parts", h.parts);
-    m.emplace_back("tessera/embreeIsa", h.isa);
-    m.emplace_back("tessera/colorSpace", h.working_space);
-    m.emplace_back("tessera/command", command);
-    if (!complete) m.emplace_back("tessera/partial", 1);
-}
-
 FilmFile merge(const std::vector<Part>& parts, const SampleBox& whole) {
     FilmFile all{parts.front().header, Film(whole.window, parts.front().header.passes)};
     FilmHeader& h = all.header;
@@ -149,23 +136,47 @@ FilmFile merge(const std::vector<Part>& parts, const SampleBox& whole) {
     return all;
 }
 
-std::uint64_t write(FilmFile& all, bool complete, const MergeOptions& o,
-                    const std::string& command) {
-    if (names_film_file(o.output) && o.preview.empty())
-        return write_film_file(o.output, all.header, all.film.arrays());
-    LayeredImage image;
+// What a render of the whole would say of itself.
+Statistics statistics_of(const FilmHeader& h, bool complete) {
+    Statistics s;
+    s.version = h.version;
+    s.scene = h.scene;
+    s.isa = h.isa;
+    s.seed = h.seed;
+    s.spp = static_cast<int>(h.most);
+    s.first_sample = h.first_sample;
+    s.render_s = h.seconds;
+    s.complete = complete;
+    return s;
+}
+
+LayeredImage picture_of(FilmFile& all) {
     const FilmHeader& h = all.header;
+    LayeredImage image;
     image.width = h.width, image.height = h.height;
     image.window = h.window;
     image.working_space = h.working_space;
     image.layers = all.film.layers();
     image.metadata = h.metadata;
-    describe_in_header(image, h, complete, command);
-    const std::uint64_t bytes = names_film_file(o.output)
-                                    ? write_film_file(o.output, all.header, all.film.arrays())
-                                    : write_exr(image, o.output, {o.all_float}).bytes;
-    if (!o.preview.empty()) write_preview(image, o.preview, o.view);
-    return bytes;
+    std::vector<std::string> notes;
+    add_mattes(all.film, h.ids, image.layers, notes);
+    for (const std::string& n : notes) log_info("note: " + n);
+    return image;
+}
+
+WriteReport write(FilmFile& all, bool complete, const MergeOptions& o, const std::string& command) {
+    const bool film = names_film_file(o.output);
+    if (film) write_film_file(o.output, all.header, all.film);
+    SceneDesc format;
+    o.out.apply(format);
+    LayeredImage image;
+    if (!film || !o.preview.empty()) image = picture_of(all);
+    describe_picture(image, all.header.scene_hash, statistics_of(all.header, complete), command,
+                     format.output);
+    if (!format.output.deterministic_metadata)
+        image.metadata.emplace_back("tessera/parts", all.header.parts);
+    return write_picture_files(
+        image, {o.output, o.preview, o.view, format.output, o.crypto_manifest == "sidecar"});
 }
 
 int run_merge(const MergeOptions& o, const std::string& command) {
@@ -174,14 +185,16 @@ int run_merge(const MergeOptions& o, const std::string& command) {
                                           {o.preview, "--preview", {".png", ".jpg", ".jpeg"}}};
     check_outputs(outputs);
     const std::vector<Part> parts = read_parts(o);
+    if (!o.preview.empty()) check_view(parts.front().header.working_space, o.view);
     std::vector<SampleBox> boxes;
     for (const Part& p : parts) boxes.push_back(p.box);
     const SampleBox whole = whole_of(boxes, parts.front().header, o);
     const bool complete = check(parts, boxes, whole, o);
     FilmFile all = merge(parts, whole);
-    const std::uint64_t bytes = write(all, complete, o, command);
+    const WriteReport written = write(all, complete, o, command);
     log_info(fmt::format("merged   {} parts, {} spp, into {} ({:.1f} MiB){}", parts.size(),
-                         all.header.most, o.output, static_cast<double>(bytes) / (1 << 20),
+                         all.header.most, names(written.files),
+                         static_cast<double>(written.bytes) / (1 << 20),
                          complete ? "" : ", partial"));
     return static_cast<int>(ExitCode::done);
 }
@@ -207,7 +220,10 @@ void add_merge(CLI::App& app, CommandLine& line) {
         ->check(CLI::Range(1, 1 << 24));
     sub->add_flag("--allow-partial", o->partial,
                   "A picture of what there is, though samples or pixels are missing");
-    sub->add_flag("--float", o->all_float, "All channels as 32-bit float");
+    o->out.add_format_to(*sub);
+    sub->add_option("--crypto-manifest", o->crypto_manifest,
+                    "Cryptomatte's names in the header or in files beside it: embedded, sidecar")
+        ->check(CLI::IsMember({"embedded", "sidecar"}));
     sub->add_flag("-q,--quiet", o->quiet, "Say nothing but errors");
     sub->footer(
         "Example:\n"

@@ -1,7 +1,6 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -15,9 +14,9 @@
 #include "renderer/cli/describe_picture.h"
 #include "renderer/cli/frame_window.h"
 #include "renderer/cli/long_render.h"
-#include "renderer/cli/manifest_files.h"
 #include "renderer/cli/output_check.h"
 #include "renderer/cli/output_options.h"
+#include "renderer/cli/picture_files.h"
 #include "renderer/cli/progress.h"
 #include "renderer/cli/scene_options.h"
 #include "renderer/cli/signals.h"
@@ -27,7 +26,6 @@
 #include "renderer/film/film_file.h"
 #include "renderer/film/pass_docs.h"
 #include "renderer/image/atomic_file.h"
-#include "renderer/image/colour_space.h"
 #include "renderer/scene/scene.h"
 
 namespace tessera {
@@ -43,12 +41,6 @@ struct RenderOptions {
     bool no_progress = false, quiet = false;
     int verbose = 0;
 };
-
-// Throws for an unknown view before hours of rendering, not after.
-void check_view(const std::string& working_space, const std::string& view) {
-    std::array<float, 3> pixel{};
-    ColorSpaces(working_space).to_display(pixel, view);
-}
 
 std::string count(std::uint64_t n) {
     const double v = static_cast<double>(n);
@@ -173,19 +165,6 @@ RenderResult render_with_progress(const Scene& scene, const RenderOptions& o,
     return result;
 }
 
-// The whole frame, and overscan with it, where less was rendered.
-void pad_to_frame(LayeredImage& image) {
-    const PixelWindow& w = image.window;
-    const PixelWindow whole{std::min(w.x0, 0), std::min(w.y0, 0), std::max(w.x1, image.width),
-                            std::max(w.y1, image.height)};
-    if (whole != w) image = reframe(image, whole);
-}
-
-std::string names(const std::vector<std::string>& files) {
-    if (files.size() == 1) return files[0];
-    return fmt::format("{} and {} more", files[0], files.size() - 1);
-}
-
 // Hours of rendering are not lost with a full disk.
 WriteReport write_picture(const Snapshots::Write& write, RenderResult& result,
                           const std::string& checkpoint) {
@@ -218,8 +197,13 @@ int run_render(RenderOptions options, const std::string& command) {
     check_outputs_spare(outputs_of(options), desc);
     options.out.apply(desc);
     check_codec(desc);
-    const OutputDesc output = desc.output;
-    if (output.exr == ExrLayout::split) check_split_spares(outputs_of(options)[0], desc);
+    const PictureFiles files{options.output,
+                             options.preview,
+                             options.view,
+                             desc.output,
+                             options.crypto_manifest == "sidecar",
+                             options.scene.threads};
+    if (files.format.exr == ExrLayout::split) check_split_spares(outputs_of(options)[0], desc);
     desc.film.crop = frame_window(desc);
     if (!options.preview.empty()) check_view(desc.film.working_space, options.view);
     const ScenePtr scene = build_scene(std::move(desc), options.scene.build_options());
@@ -228,22 +212,8 @@ int run_render(RenderOptions options, const std::string& command) {
     ProgressPrinter printer(progress_style(options));
     const auto display = open_display(scene->film(), options, printer);
     const auto write = [&](RenderResult& r) {
-        if (output.crop_pad) pad_to_frame(r.image);
-        describe_picture(r.image, *scene, r.stats, command, output.deterministic_metadata);
-        if (names_film_file(options.output)) {
-            std::error_code none;  // of a snapshot there is no film file
-            WriteReport report;
-            report.bytes = std::filesystem::file_size(options.output, none);
-            report.files = {options.output};
-            if (!options.preview.empty()) write_preview(r.image, options.preview, options.view);
-            return report;
-        }
-        if (options.crypto_manifest == "sidecar")
-            write_manifests(move_manifests(r.image.metadata, options.output));
-        const WriteReport report =
-            write_exr(r.image, options.output, write_options(output, options.scene.threads));
-        if (!options.preview.empty()) write_preview(r.image, options.preview, options.view);
-        return report;
+        describe_picture(r.image, scene->hash(), r.stats, command, files.format);
+        return write_picture_files(r.image, files);
     };
     RenderResult result = render_with_progress(*scene, options, write, printer, display.get());
     Statistics& s = result.stats;

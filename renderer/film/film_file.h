@@ -14,9 +14,14 @@ inline constexpr const char* kFilmExtension = ".tsf";
 /// Whether a path ends so.
 bool names_film_file(const std::string& path);
 
+/// What a film's passes of names counted, in their order: what arrays() leaves out.
+std::vector<IdCoverageState> coverage_states(Film& film);
+
 /// Whole or not at all; returns the size. Throws Error(output).
 std::uint64_t write_film_file(const std::string& path, const FilmHeader& header,
-                              std::span<const Film::Array> arrays);
+                              std::span<const Film::Array> arrays,
+                              std::span<const IdCoverageState> coverage);
+std::uint64_t write_film_file(const std::string& path, const FilmHeader& header, Film& film);
 
 /// Throws Error(scene): no such file, foreign, cut short, damaged, of another format.
 FilmHeader read_film_header(const std::string& path);

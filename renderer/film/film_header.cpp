@@ -49,6 +49,12 @@ const char* name_of(PassSource source) {
             return "object_id";
         case PassSource::material_id:
             return "material_id";
+        case PassSource::crypto_object:
+            return "crypto_object";
+        case PassSource::crypto_material:
+            return "crypto_material";
+        case PassSource::crypto_asset:
+            return "crypto_asset";
         case PassSource::sample_count:
             return "sample_count";
         case PassSource::seconds:
@@ -150,14 +156,16 @@ std::string to_string(const PixelWindow& w) {
 
 std::string to_json(const FilmHeader& h) {
     json passes = json::array();
-    for (const Pass& p : h.passes) {
+    for (std::size_t i = 0; i < h.passes.size(); ++i) {
+        const Pass& p = h.passes[i];
         passes.push_back({{"name", p.name},
                           {"channels", p.channels},
                           {"kind", p.kind == LayerKind::color ? "color" : "data"},
                           {"source", name_of(p.source)},
                           {"expression", p.expression},
                           {"events", p.events},
-                          {"group", p.group}});
+                          {"group", p.group},
+                          {"ids", h.ids.at(i)}});
     }
     const json j = {
         {"version", h.version},
@@ -195,6 +203,7 @@ FilmHeader film_header_from(const std::string& text) {
     h.seed = j.at("seed").get<std::uint64_t>();
     for (const json& p : j.at("passes")) {
         h.passes.push_back(pass_from(p));
+        h.ids.push_back(p.at("ids").get<std::vector<std::uint32_t>>());
         const Pass& pass = h.passes.back();
         const std::size_t most = pass.source == PassSource::variance ? 3 : 4;
         if (pass.channels.empty() || pass.channels.size() > most || h.passes.size() > kMaxPasses)
@@ -224,6 +233,7 @@ std::optional<FilmDifference> difference(const FilmHeader& a, const FilmHeader& 
     if (const auto d = unequal("resolution", size(a), size(b))) return d;
     if (const auto d = unequal("seed", std::to_string(a.seed), std::to_string(b.seed))) return d;
     if (const auto d = pass_difference(a.passes, b.passes)) return d;
+    if (a.ids != b.ids) return FilmDifference{"names for mattes", "others", "others"};
     if (const auto d = unequal("working space", a.working_space, b.working_space)) return d;
     if (const auto d = unequal("instruction set (--isa)", a.isa, b.isa)) return d;
     return unequal("hash of the scene and its files", a.scene_hash, b.scene_hash);

@@ -23,10 +23,11 @@ struct FilmHeader {
     PixelWindow window;
     std::uint64_t seed = 0;
     Passes passes;
-    int first_sample = 0;               // index
-    std::uint32_t least = 0, most = 0;  // samples of a pixel
-    double seconds = 0;                 // of rendering, all parts together
-    int parts = 1;                      // that were merged
+    std::vector<std::vector<std::uint32_t>> ids;  // of passes that count names: theirs, by key
+    int first_sample = 0;                         // index
+    std::uint32_t least = 0, most = 0;            // samples of a pixel
+    double seconds = 0;                           // of rendering, all parts together
+    int parts = 1;                                // that were merged
     std::vector<std::pair<std::string, MetadataValue>> metadata;
 };
 

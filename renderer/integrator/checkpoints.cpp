@@ -43,14 +43,14 @@ void Checkpoints::run() {
         given_ = false;
         if (!copied_) continue;
         lock.unlock();
-        write(copies_, header_);
+        write([&] { write_film_file(path_, header_, copies_, coverage_); });
         lock.lock();
     }
 }
 
 void Checkpoints::start(Film& film, FilmHeader header) {
     const bool copied = copy(film);
-    if (!copied) write(film.arrays(), header);
+    if (!copied) write([&] { write_film_file(path_, header, film); });
     {
         const std::lock_guard lock(mutex_);
         wanted_ = false;
@@ -64,7 +64,7 @@ void Checkpoints::start(Film& film, FilmHeader header) {
 void Checkpoints::finish(Film& film, const FilmHeader& header) {
     if (path_.empty()) return;
     stop();
-    write(film.arrays(), header);
+    write([&] { write_film_file(path_, header, film); });
 }
 
 bool Checkpoints::copy(Film& film) {
@@ -77,8 +77,9 @@ bool Checkpoints::copy(Film& film) {
                 bytes_ += a.bytes.size();
             }
         }
+        coverage_ = coverage_states(film);
     } catch (const std::bad_alloc&) {
-        memory_.clear(), copies_.clear(), bytes_ = 0;
+        memory_.clear(), copies_.clear(), coverage_.clear(), bytes_ = 0;
         return false;
     }
     for (std::size_t i = 0; i < arrays.size(); ++i)
@@ -86,10 +87,10 @@ bool Checkpoints::copy(Film& film) {
     return true;
 }
 
-void Checkpoints::write(const std::vector<Film::Array>& arrays, const FilmHeader& header) {
+void Checkpoints::write(const std::function<void()>& write_file) {
     std::string failure;
     try {
-        write_film_file(path_, header, arrays);
+        write_file();
         ++written_;
     } catch (const std::bad_alloc&) {
         failure = path_ + ": cannot write: out of memory";

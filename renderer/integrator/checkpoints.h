@@ -42,7 +42,7 @@ private:
     void run();
     void stop();
     bool copy(Film& film);
-    void write(const std::vector<Film::Array>& arrays, const FilmHeader& header);
+    void write(const std::function<void()>& write_file);
 
     std::string path_;
     double every_s_;
@@ -53,6 +53,7 @@ private:
     // A copy of the film's arrays, kept from one to the next.
     std::vector<std::unique_ptr<std::byte[]>> memory_;
     std::vector<Film::Array> copies_;
+    std::vector<IdCoverageState> coverage_;
     std::size_t bytes_ = 0;
     FilmHeader header_;
     std::mutex mutex_;

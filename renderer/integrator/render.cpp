@@ -10,9 +10,9 @@
 #include "renderer/core/parallel.h"
 #include "renderer/film/film.h"
 #include "renderer/film/film_file.h"
+#include "renderer/film/mattes.h"
 #include "renderer/integrator/block.h"
 #include "renderer/integrator/checkpoints.h"
-#include "renderer/integrator/mattes.h"
 #include "renderer/integrator/path_passes.h"
 #include "renderer/integrator/resume.h"
 #include "renderer/integrator/tiles.h"
@@ -34,6 +34,7 @@ public:
           window_(window_of(scene.film())),
           film_(settings.resume.empty() ? Film(window_, scene.passes())
                                         : resumed_film(scene, window_, settings, resumed_s_)),
+          header_(film_header(scene, window_, settings.first_sample)),
           times_(std::any_of(scene.passes().begin(), scene.passes().end(),
                              [](const Pass& p) { return p.source == PassSource::seconds; })),
           filter_(scene.film().filter, scene.film().filter_width_px),
@@ -133,16 +134,17 @@ private:
         return interrupted;
     }
 
-    FilmHeader header() const {
-        FilmHeader h = film_header(scene_, film_, settings_.first_sample);
-        h.seconds = resumed_s_ + seconds_since(start_);
-        return h;
+    const FilmHeader& header() {
+        const SampleCounts counts = sample_range(film_);
+        header_.least = counts.least, header_.most = counts.most;
+        header_.seconds = resumed_s_ + seconds_since(start_);
+        return header_;
     }
 
     void save() {
         const std::string& file = settings_.film_file;
         if (settings_.checkpoint != file || file.empty()) checkpoints_.finish(film_, header());
-        if (!file.empty()) write_film_file(file, header(), film_.arrays());
+        if (!file.empty()) write_film_file(file, header(), film_);
     }
 
     // False if it was interrupted; the film knows how far each block is.
@@ -246,7 +248,8 @@ private:
             s.first_invalid = std::string(to_string(f.cause)) + " at pixel " + std::to_string(f.x) +
                               "," + std::to_string(f.y) + " sample " + std::to_string(f.sample);
         }
-        add_mattes(scene_, film_, r.image, s.notes);
+        add_mattes(film_, header_.ids, r.image.layers, s.notes);
+        r.image.metadata = header_.metadata;
         if (film_.passes().empty()) s.left_out.push_back({"passes", "only beauty was asked for"});
         return r;
     }
@@ -257,6 +260,7 @@ private:
     double resumed_s_ = 0;  // of the runs before, set with film_
     int resumed_ = 0;       // samples of those
     Film film_;
+    FilmHeader header_;
     bool times_;  // a pass wants them
     FilterSampler filter_;
     BlockKernel kernel_;

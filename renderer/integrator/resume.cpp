@@ -1,26 +1,23 @@
 #include "renderer/integrator/resume.h"
 
+#include <algorithm>
+
+#include "renderer/film/cryptomatte.h"
 #include "renderer/film/film_file.h"
 #include "renderer/integrator/block.h"
 
 namespace tessera {
 namespace {
 
-FilmHeader header_of(const Scene& scene, const PixelWindow& window, int first_sample) {
-    const Statistics& s = scene.statistics();
-    FilmHeader h;
-    h.version = s.version;
-    h.isa = s.isa;
-    h.scene = s.scene;
-    h.scene_hash = scene.hash();
-    h.working_space = scene.film().working_space;
-    h.width = scene.film().width;
-    h.height = scene.film().height;
-    h.window = window;
-    h.seed = scene.settings().seed;
-    h.passes = scene.passes();
-    h.first_sample = first_sample;
-    return h;
+const NameList& names_of(const Scene& scene, PassSource source) {
+    if (source == PassSource::crypto_object) return scene.name_ids()->list(NameKind::object);
+    return scene.name_ids()->list(source == PassSource::crypto_material ? NameKind::material
+                                                                        : NameKind::asset);
+}
+
+bool counts_names(PassSource s) {
+    return s == PassSource::crypto_object || s == PassSource::crypto_material ||
+           s == PassSource::crypto_asset;
 }
 
 // A block is rendered as one.
@@ -38,10 +35,28 @@ bool even_blocks(const Film& film) {
 
 }  // namespace
 
-FilmHeader film_header(const Scene& scene, const Film& film, int first_sample) {
-    FilmHeader h = header_of(scene, film.window(), first_sample);
-    const SampleCounts counts = sample_range(film);
-    h.least = counts.least, h.most = counts.most;
+FilmHeader film_header(const Scene& scene, const PixelWindow& window, int first_sample) {
+    const Statistics& s = scene.statistics();
+    FilmHeader h;
+    h.version = s.version;
+    h.isa = s.isa;
+    h.scene = s.scene;
+    h.scene_hash = scene.hash();
+    h.working_space = scene.film().working_space;
+    h.width = scene.film().width;
+    h.height = scene.film().height;
+    h.window = window;
+    h.seed = scene.settings().seed;
+    h.passes = scene.passes();
+    h.first_sample = first_sample;
+    for (const Pass& p : h.passes) {
+        h.ids.emplace_back();
+        if (!counts_names(p.source)) continue;
+        const NameList& list = names_of(scene, p.source);
+        h.ids.back() = list.ids;
+        for (auto& attribute : cryptomatte_header(p.name, list.names))
+            h.metadata.push_back(std::move(attribute));
+    }
     return h;
 }
 
@@ -53,7 +68,7 @@ Film resumed_film(const Scene& scene, const PixelWindow& window, const RenderSet
         throw Error(code, path + ": cannot go on from it: its " + what + " is " + there +
                               ", this render's is " + here);
     };
-    const FilmHeader wanted = header_of(scene, window, settings.first_sample);
+    const FilmHeader wanted = film_header(scene, window, settings.first_sample);
     // Before the arrays, which may be large, are read.
     const FilmHeader there = read_film_header(path);
     if (const auto d = difference(there, wanted)) refuse(ExitCode::scene, d->what, d->a, d->b);

@@ -7,8 +7,8 @@
 
 namespace tessera {
 
-/// Without the seconds.
-FilmHeader film_header(const Scene& scene, const Film& film, int first_sample);
+/// Without samples and seconds.
+FilmHeader film_header(const Scene& scene, const PixelWindow& window, int first_sample);
 
 /// Reads settings.resume; seconds: that it took so far. Throws Error(scene) if it is no good or of
 /// another picture, Error(usage) if it has other samples than are asked for.
