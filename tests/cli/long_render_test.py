@@ -293,7 +293,7 @@ class Merge(LongRender):
 
 
 class FullDisk(LongRender):
-    ARGS = ("--spp", "3000", "--res", "64x64", "--aov", "Z", "--checkpoint-every", "0.1")
+    ARGS = ("--spp", "1200", "--res", "64x64", "--aov", "Z", "--checkpoint-every", "0.1")
 
     def check(self, err, checkpoint):
         self.assertIn("cannot write", err)
