@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "renderer/core/parallel.h"
 #include "renderer/film/film.h"
 #include "renderer/film/film_header.h"
 
@@ -29,7 +30,7 @@ public:
     /// Time for one; the one before is on the disk.
     bool wanted() const noexcept { return wanted_.load(std::memory_order_relaxed); }
     /// Copies the film and clears wanted(). Without memory for a copy it writes at once.
-    void start(Film& film, FilmHeader header);
+    void start(Film& film, FilmHeader header, Workers& workers);
     /// The last one, in this thread. Nothing is wanted afterwards.
     void finish(Film& film, const FilmHeader& header);
 
@@ -41,7 +42,7 @@ public:
 private:
     void run();
     void stop();
-    bool copy(Film& film);
+    bool copy(Film& film, Workers& workers);
     void write(const std::function<void()>& write_file);
 
     std::string path_;

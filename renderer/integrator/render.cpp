@@ -120,7 +120,7 @@ private:
         bool interrupted = false;
         if (checkpoints_.wanted()) {
             const Clock::time_point start = Clock::now();
-            checkpoints_.start(film_, header());
+            checkpoints_.start(film_, header(), workers_);
             checkpoint_s_ += seconds_since(start);
             interrupted = true;
         }
