@@ -42,6 +42,12 @@ void parse_overscan(const std::string& text, FilmDesc& film) {
 }  // namespace
 
 void OutputOptions::add_to(CLI::App& app) {
+    add_format_to(app);
+    app.add_option("--overscan", overscan,
+                   "Render beyond each edge of the frame: 0.1 of its size, or 16px");
+}
+
+void OutputOptions::add_format_to(CLI::App& app) {
     app.add_option("--exr", exr,
                    "single: one part; multipart: a part per layer; split: a file per layer, <aov> "
                    "in -o stands for its name")
@@ -51,8 +57,6 @@ void OutputOptions::add_to(CLI::App& app) {
         ->check(CLI::IsMember({"none", "zips", "zip", "piz", "dwaa", "dwab"}));
     app.add_option("--dwa-level", dwa_level, "Loss of dwaa and dwab (default 45)")
         ->check(CLI::Range(0.0, 1000.0));
-    app.add_option("--overscan", overscan,
-                   "Render beyond each edge of the frame: 0.1 of its size, or 16px");
     app.add_flag("--float", all_float, "All channels as 32-bit float");
     app.add_flag("--crop-pad", crop_pad, "The whole frame, black where nothing was rendered");
     app.add_flag("--deterministic-metadata", deterministic,
