@@ -89,8 +89,12 @@ class OpenExr(StillLifeTest):
         self.render("s_<aov>.exr", *ALL, "--exr", "split")
         (picture,) = self.parts("s_N.exr")
         self.assertEqual(set(picture.channels), set("RGB"))
-        self.assertEqual((picture["tessera/pass"], picture["tessera/channels"]), ("N", "N.X N.Y N.Z"))
+        self.assertEqual((picture["tessera/pass"], picture["tessera/channels"]), ("N", "X,Y,Z"))
         self.assertEqual(set(self.parts("s_beauty.exr")[0].channels), set("RGBA"))
+        for file in self.folder.glob("s_*.exr"):
+            (picture,) = self.parts(file.name)
+            mattes = {picture[key] for key in picture.attributes if key.endswith("/name")}
+            self.assertEqual(mattes, {file.stem[2:]} if "Crypto" in file.name else set(), file.name)
 
     def test_windows(self):
         for file, options, window in (("frame", (), "(0 0) - (95 53)"), ("crop", ("--crop", "16,8,64,48"), "(16 8) - (63 47)"),
