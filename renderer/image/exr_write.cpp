@@ -79,6 +79,20 @@ Imf::Compression codec_of(ExrCompression c) {
     return Imf::ZIP_COMPRESSION;
 }
 
+/// Cryptomatte's entries go with its layers: readers look for layers wherever they find entries.
+bool belongs(const std::string& name, const LayeredImage& image, const ExrFile& file) {
+    if (!name.starts_with("cryptomatte/")) return true;
+    const std::string key = name.substr(0, name.rfind('/') + 1) + "name";
+    for (const auto& [other, type] : image.metadata) {
+        if (other != key) continue;
+        for (const ExrPart& part : file.parts) {
+            for (const ExrChannel& channel : part.channels)
+                if (channel.name.starts_with(std::get<std::string>(type))) return true;
+        }
+    }
+    return false;
+}
+
 void put(const std::vector<std::pair<std::string, MetadataValue>>& metadata, Imf::Header& header) {
     for (const auto& [name, value] : metadata) {
         if (name.empty() || name.size() > kMaxName)
@@ -114,7 +128,9 @@ Imf::Header make_header(const LayeredImage& image, const ExrFile& file, const Ex
         header.setName(part.name);
     }
     if (&part == file.parts.data()) {
-        put(image.metadata, header);
+        std::vector<std::pair<std::string, MetadataValue>> metadata = image.metadata;
+        std::erase_if(metadata, [&](const auto& m) { return !belongs(m.first, image, file); });
+        put(metadata, header);
         put(file.metadata, header);
     }
     return header;

@@ -226,6 +226,14 @@ TEST_CASE("exrcheck: each fault is found, and nothing else") {
     }
 }
 
+TEST_CASE("exrcheck: a lone channel A is no alpha") {
+    ExrBytes file = clean();
+    add(file, "sample_count", "A", 64, kFloat);
+    CHECK(rules_of(check(file.bytes())).empty());
+    add(file, "glow", "RGBA", 1.1f);
+    CHECK(rules_of(check(file.bytes())) == std::set<std::string>{"alpha-range"});
+}
+
 TEST_CASE("exrcheck: every rule has a test") {
     std::set<std::string> tested{"unreadable", "truncated", "damaged-pixels", "not-looked-at",
                                  "deep"};  // in the cases below
