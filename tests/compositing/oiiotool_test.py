@@ -3,14 +3,15 @@
 import math
 import re
 
-from still_life import ALL, FLOAT_TOLERANCE, GROUPS, HALF_FLOOR, HALF_TOLERANCE, LIGHT, Exr, StillLifeTest, main
+from read_cryptomatte import File, id_of
+from still_life import ALL, FLOAT_TOLERANCE, GROUPS, HALF_FLOOR, HALF_TOLERANCE, LIGHT, SOURCE, Exr, StillLifeTest, main
 
 # What the lamps of each group are multiplied by, and the key of the scene file that says so.
 LAMPS = {
     "RGBA_fill": ("environment.radiance", (0.2, 0.25, 0.33)),
     "RGBA_key": ("light.softbox.radiance", (5.4, 5.2, 4.8)),
     "RGBA_rim": ("light.strip.radiance", (10, 10.5, 12)),
-    "RGBA_flame": ("material.flame.emission_luminance", (5000,)),
+    "RGBA_flame": ("material.flame.emission_luminance", (3500,)),
 }
 
 
@@ -85,6 +86,32 @@ class Oiiotool(StillLifeTest):
         # And a look that is not the one asked for is many sigma away in the shadows' tint: red over blue.
         ratio = [sum(p[0]) / sum(p[2]) for p in (mixed, rendered, plain)]
         self.assertAlmostEqual(ratio[0], ratio[1], delta=abs(ratio[2] - ratio[1]) / 5)
+
+
+class Page(StillLifeTest):
+    """What docs/compositing.md has oiiotool do is what it says it is."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.render("comp.exr", *ALL)
+        text = (SOURCE / "docs" / "compositing.md").read_text(encoding="utf-8")
+        for block in re.findall(r"^```sh test\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)[1:]:
+            cls.run_tool("bash", "-euo", "pipefail", "-c", block)
+
+    def test_its_matte_is_that_of_the_independent_reader(self):
+        wanted = File(self.folder / "comp.exr").cryptomattes()["CryptoObject"].matte(id_of("red ball"))
+        self.assert_near([Exr(self.folder / "matte.exr").values("Y")], [wanted], 1e-6)
+
+    def test_its_tint_and_grade_are_beauty_with_that_changed(self):
+        file = Exr(self.folder / "comp.exr")
+        beauty, matte = self.colours(file), Exr(self.folder / "matte.exr").values("Y")
+        passes = [self.colours(file, name) for name in ("specular_direct", "specular_indirect")]
+        tinted = [[b + w * (x + y) for b, x, y in zip(beauty[c], passes[0][c], passes[1][c])]
+                  for c, w in enumerate((0.6, -0.25, -0.75))]
+        self.assert_near(self.colours("tinted.exr"), tinted, 3 * HALF_TOLERANCE, 1e-5)  # written as half
+        graded = [[b + m * (o - b) for b, o, m in zip(beauty[c], beauty[other], matte)] for c, other in enumerate((1, 0, 2))]
+        self.assert_near(self.colours("graded.exr"), graded, 3 * HALF_TOLERANCE, 1e-5)
 
 
 class Layouts(StillLifeTest):
