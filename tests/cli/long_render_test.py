@@ -58,18 +58,18 @@ class Killed(LongRender):
         whole = Exr(self.folder / "whole.exr")
         again = ("--checkpoint", "c.tsf", "--checkpoint-every", "0.05", "--resume", "c.tsf")
         moments = random.Random(4)
-        kills = done = 0
-        while kills < 20 or done == 0:
+        kills, done = 0, False
+        while kills < 20 or not done:  # the last one killed is resumed too
             # Other threads and tiles every time.
             how = ("-t", str(1 + kills % 3), "--tile", str(8 << kills % 3))
             seconds = (moments.uniform(0.05, 0.6) if kills < 20 else 60) * SLOWDOWN
             code = self.killed_after(seconds, signal.SIGKILL, *self.render_args("out.exr", *args, *again, *how))
             if code == -signal.SIGKILL:
-                kills += 1
+                kills, done = kills + 1, False
                 continue
             self.assertEqual(code, 0)
             self.assert_same_bits(whole, Exr(self.folder / "out.exr"), f"after {kills} kills")
-            done += 1
+            done = True
             (self.folder / "out.exr").unlink()
             (self.folder / "c.tsf").unlink()
         self.assertEqual([n for n in self.files() if "tmp" in n], [])
