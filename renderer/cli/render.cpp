@@ -34,7 +34,7 @@ namespace {
 struct RenderOptions {
     SceneOptions scene;
     OutputOptions out;
-    std::string output, preview, view, stats, display;
+    std::string output, preview, view, stats, display, deep;
     std::string progress = "auto", crypto_manifest = "embedded";
     double time_s = 0;
     bool no_progress = false, quiet = false;
@@ -66,6 +66,7 @@ void write_stats(const Statistics& s, const std::string& path) {
 std::vector<OutputFile> outputs_of(const RenderOptions& o) {
     return {{o.output, "--output", {".exr"}},
             {o.preview, "--preview", {".png", ".jpg", ".jpeg"}},
+            {o.deep, "--deep", {".exr"}},
             {o.stats == "-" ? "" : o.stats, "--stats", {}}};
 }
 
@@ -141,6 +142,7 @@ RenderResult render_with_progress(const Scene& scene, const RenderOptions& o,
     settings.threads = o.scene.threads;
     settings.tile = o.scene.tile;
     settings.time_s = o.time_s;
+    settings.deep = !o.deep.empty();
     settings.cancel = &stop_at_next_tile();
     settings.progress = [&](const Progress& p) { printer.show(p); };
     settings.snapshot = &snapshot_wanted();
@@ -162,6 +164,18 @@ void fit_to_frame(LayeredImage& image, PixelWindow window, bool pad) {
         window = {std::min(window.x0, 0), std::min(window.y0, 0), std::max(window.x1, image.width),
                   std::max(window.y1, image.height)};
     if (window != image.window) image = reframe(image, window);
+}
+
+// What the header says of the picture; names of mattes are left to the file that has them.
+void write_deep(RenderResult& r, const PixelWindow& window, const std::string& path,
+                const WriteOptions& options, WriteReport& report) {
+    for (const auto& entry : r.image.metadata)
+        if (!entry.first.starts_with("cryptomatte/")) r.deep->metadata.push_back(entry);
+    const WriteReport deep = write_deep_exr(*r.deep, window, path, options);
+    report.bytes += deep.bytes;
+    report.clamped += deep.clamped;
+    report.non_finite += deep.non_finite;
+    report.files.push_back(path);
 }
 
 std::string names(const std::vector<std::string>& files) {
@@ -203,8 +217,9 @@ int run_render(RenderOptions options, const std::string& command) {
         describe_picture(r.image, *scene, r.stats, command, output.deterministic_metadata);
         if (options.crypto_manifest == "sidecar")
             write_manifests(move_manifests(r.image.metadata, options.output));
-        const WriteReport report =
-            write_exr(r.image, options.output, write_options(output, options.scene.threads));
+        const WriteOptions how = write_options(output, options.scene.threads);
+        WriteReport report = write_exr(r.image, options.output, how);
+        if (r.deep) write_deep(r, r.image.window, options.deep, how, report);
         if (!options.preview.empty()) write_preview(r.image, options.preview, options.view);
         return report;
     };
@@ -258,6 +273,9 @@ void add_render(CLI::App& app, CommandLine& line) {
         ->check(positive_seconds);
     sub->add_option("--display", o->display,
                     "HOST:PORT of a tev viewer that shows the picture as it grows")
+        ->check(named);
+    sub->add_option("--deep", o->deep,
+                    "Also a deep EXR: beauty apart by depth, for merging by depth")
         ->check(named);
     o->out.add_to(*sub);
     sub->add_flag_callback(

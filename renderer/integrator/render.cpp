@@ -29,7 +29,7 @@ public:
         : scene_(scene),
           settings_(settings),
           window_(window_of(scene.film())),
-          film_(window_, scene.passes()),
+          film_(window_, scene.passes(), settings.deep),
           times_(std::any_of(scene.passes().begin(), scene.passes().end(),
                              [](const Pass& p) { return p.source == PassSource::seconds; })),
           filter_(scene.film().filter, scene.film().filter_width_px),
@@ -116,7 +116,7 @@ private:
         BlockSamples samples;
         PassSamples passes = film_.pass_samples();
         PathPasses path_passes(scene_, passes);
-        if (!film_.passes().empty()) job.passes = &path_passes;
+        if (film_.takes_passes()) job.passes = &path_passes;
         for (int y = tile.y0 & ~(kBlockSize - 1); y < tile.y1; y += kBlockSize) {
             for (int x = tile.x0 & ~(kBlockSize - 1); x < tile.x1; x += kBlockSize) {
                 job.x = x, job.y = y;
@@ -174,6 +174,7 @@ private:
         r.image.window = window_;
         r.image.working_space = scene_.film().working_space;
         r.image.layers = film_.layers();
+        if (film_.deep()) r.deep = deep_image();
         r.stats = scene_.statistics();
         Statistics& s = r.stats;
         s.threads = workers_.threads();
@@ -192,8 +193,20 @@ private:
                               "," + std::to_string(f.y) + " sample " + std::to_string(f.sample);
         }
         add_mattes(scene_, film_, r.image, s.notes);
+        if (const std::size_t crowded = film_.deep() ? film_.deep()->crowded() : 0; crowded > 0)
+            s.notes.push_back("deep: " + std::to_string(crowded) + " pixels see more than " +
+                              std::to_string(DeepPixels::kMaxDepths) +
+                              " depths; theirs are coarser");
         if (film_.passes().empty()) s.left_out.push_back({"passes", "only beauty was asked for"});
         return r;
+    }
+
+    DeepImage deep_image() const {
+        DeepImage image = film_.deep_image();
+        image.width = scene_.film().width;
+        image.height = scene_.film().height;
+        image.working_space = scene_.film().working_space;
+        return image;
     }
 
     const Scene& scene_;

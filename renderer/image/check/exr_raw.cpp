@@ -27,7 +27,8 @@ public:
     explicit Reader(const std::string& path)
         : file_(path, std::ios::binary), size_(std::filesystem::file_size(path)) {}
 
-    std::uint64_t left() { return size_ - position_; }
+    std::uint64_t left() const { return size_ - position_; }
+    std::uint64_t position() const { return position_; }
     std::uint64_t size() const { return size_; }
 
     std::string bytes(std::uint64_t count) {
@@ -171,6 +172,7 @@ std::uint64_t count_tiles(const RawPart& part) {
 
 // A chunk that is missing has offset 0 or one behind the end; the last one may be there in part.
 void read_table(Reader& in, bool multipart, RawPart& part) {
+    part.table = in.position();
     part.chunks = part.tiled ? count_tiles(part) : parts_of(part.data.height(), part.chunk_lines());
     const std::uint64_t there = std::min(part.chunks, in.left() / 8);
     part.missing = part.chunks - there;
