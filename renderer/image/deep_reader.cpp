@@ -24,6 +24,7 @@ constexpr std::array<const char*, kChannels> kNames{"R", "G", "B", "A", "Z", "ZB
 constexpr std::uint64_t kMaxLineSamples = std::uint64_t(1) << 26;
 
 void check(const std::string& path) {
+    if (sniff_image(path) != ImageFormat::exr) fail_image(path, "it is not an OpenEXR file");
     const RawExr raw = read_raw_exr(path);
     if (!raw.damage.empty()) fail_image(path, raw.damage);
     const RawPart& part = raw.parts[0];
