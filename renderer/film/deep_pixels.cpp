@@ -32,16 +32,16 @@ void DeepPixels::join(Bin& to, const Bin& added) noexcept {
 
 void DeepPixels::coarsen(Pixel& p) {
     ++p.level;
-    std::size_t last = 0;
+    std::size_t kept = 0;
     for (std::size_t i = 0; i < p.bins.size(); ++i) {
         Bin bin = p.bins[i];
         if (bin.key != kBackground) bin.key >>= 1;
-        if (i > 0 && p.bins[last].key == bin.key)
-            join(p.bins[last], bin);
+        if (kept > 0 && p.bins[kept - 1].key == bin.key)
+            join(p.bins[kept - 1], bin);
         else
-            p.bins[last = i == 0 ? 0 : last + 1] = bin;
+            p.bins[kept++] = bin;
     }
-    p.bins.resize(last + 1);
+    p.bins.resize(kept);
 }
 
 // Allocates, in the render loop: once for most pixels and pictures.
