@@ -87,6 +87,10 @@ TEST_CASE("deep pixels: a joined sample spans at most the tolerance, wherever th
         deep.add(0, z, Color(1.0f));
         deep.add(0, z * 1.0002f, Color(1.0f));
         CHECK(samples_of(deep, 0, 2).size() == 1);
+        deep = DeepPixels(1);
+        for (int k = 0; k <= 20; ++k)
+            deep.add(0, z * (1 + 1e-4f * static_cast<float>(k)), Color(1.0f));
+        CHECK(samples_of(deep, 0, 21)[0].alpha < 11.5 / 21);  // 0.1 % are 10 of them
     }
 }
 
