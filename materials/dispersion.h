@@ -15,7 +15,7 @@ inline constexpr float kShortestWave = 0.39f, kLongestWave = 0.69f;  // micromet
 inline float dispersed_ior(float ior, float abbe, float wave) {
     constexpr float kD = 0.5893f, kF = 0.4861f, kC = 0.6563f;
     const float b = (ior - 1.0f) / (abbe * (1.0f / (kF * kF) - 1.0f / (kC * kC)));
-    return std::max(ior + b * (1.0f / (wave * wave) - 1.0f / (kD * kD)), 1.0f);
+    return std::max(ior + b * (1.0f / (wave * wave) - 1.0f / (kD * kD)), std::min(ior, 1.0f));
 }
 
 /// How red, green and blue answer to a wavelength: never negative, each with mean one over the

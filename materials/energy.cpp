@@ -16,6 +16,14 @@ namespace {
 float mu_at(float x) { return std::max(x * x, 1e-4f); }
 float alpha_at(float x) { return x * x; }
 float eta_at(float x) { return 1.0f + 3.0f * x * x * x; }
+// Beyond that little changes, and that with 1 / eta.
+constexpr float kFarEta = 4, kMostEta = 100;
+float far_eta_at(float x) {
+    return 1.0f / (1.0f / kFarEta + (1.0f / kMostEta - 1.0f / kFarEta) * x);
+}
+float far_eta_place(float eta) {
+    return (1.0f / kFarEta - 1.0f / eta) / (1.0f / kFarEta - 1.0f / kMostEta);
+}
 
 struct Cell {
     int i;
@@ -34,19 +42,17 @@ float unit(int i, int n) { return static_cast<float>(i) / static_cast<float>(n -
 class Table {
 public:
     template <class Quadrature>
-    Table(int mus, int alphas, int etas, Quadrature value)
-        : mus_(mus), alphas_(alphas), etas_(etas) {
+    Table(int mus, int alphas, int etas, Quadrature value, bool far = false)
+        : mus_(mus), alphas_(alphas), etas_(etas), far_(far) {
         for (int e = 0; e < etas; ++e)
             for (int a = 0; a < alphas; ++a)
                 for (int m = 0; m < mus; ++m)
                     values_.push_back(value(mu_at(unit(m, mus)), alpha_at(unit(a, alphas)),
-                                            etas > 1 ? eta_at(unit(e, etas)) : 1.0f));
+                                            etas > 1 ? eta_of(unit(e, etas)) : 1.0f));
     }
     float operator()(float cos_o, float alpha, float eta) const {
         const Cell m = cell(safe_sqrt(cos_o), mus_), a = cell(safe_sqrt(alpha), alphas_),
-                   e = etas_ > 1
-                           ? cell(std::cbrt(std::max(eta - 1.0f, 0.0f) * (1.0f / 3.0f)), etas_)
-                           : Cell{0, 0};
+                   e = etas_ > 1 ? cell(place_of(eta), etas_) : Cell{0, 0};
         float sum = 0;
         for (int corner = 0; corner < (etas_ > 1 ? 8 : 4); ++corner) {
             const int dm = corner & 1, da = (corner >> 1) & 1, de = corner >> 2;
@@ -58,7 +64,14 @@ public:
     }
 
 private:
+    float eta_of(float x) const { return far_ ? far_eta_at(x) : eta_at(x); }
+    float place_of(float eta) const {
+        return far_ ? far_eta_place(eta)
+                    : std::cbrt(std::max(eta - 1.0f, 0.0f) * (1.0f / (kFarEta - 1.0f)));
+    }
+
     int mus_, alphas_, etas_;
+    bool far_ = false;  // eta from kFarEta on
     std::vector<float> values_;
 };
 
@@ -108,11 +121,67 @@ float glass_albedo_quadrature(float cos_o, float alpha, float eta, int n) noexce
     });
 }
 
-float dielectric_reflection_albedo(float cos_o, float alpha, float eta) noexcept {
-    static const Table table(32, 32, 16, [](float mu, float a, float e) {
-        return dielectric_reflection_albedo_quadrature(mu, a, e, 12);
+float fresnel_node(int i) noexcept { return mu_at(unit(i, kFresnelNodes)); }
+
+FresnelWeights fresnel_interpolation(float cosine) noexcept {
+    const Cell c = cell(safe_sqrt(cosine), kFresnelNodes);
+    FresnelWeights w{};
+    w[static_cast<std::size_t>(c.i)] = 1.0f - c.t;
+    w[static_cast<std::size_t>(c.i) + 1] = c.t;
+    return w;
+}
+
+FresnelWeights fresnel_weights_quadrature(float cos_o, float alpha, int n) noexcept {
+    FresnelWeights sum{};
+    over_normals(cos_o, alpha, n, [&](Vec3f wo, Vec3f h, const auto& masking) {
+        const Vec3f wi = reflect(wo, h);
+        if (!(wi.z > 0.0f)) return 0.0f;
+        const FresnelWeights at = fresnel_interpolation(clamp01(dot(wo, h)));
+        const float share = masking(wi) / static_cast<float>(n * n);
+        for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += at[k] * share;
+        return share;
     });
-    return table(cos_o, alpha, eta);
+    return sum;
+}
+
+FresnelWeights fresnel_weights(float cos_o, float alpha) noexcept {
+    constexpr int kMus = 32, kAlphas = 24;
+    static const std::vector<FresnelWeights> table = [] {
+        std::vector<FresnelWeights> t;
+        for (int a = 0; a < kAlphas; ++a)
+            for (int m = 0; m < kMus; ++m)
+                t.push_back(fresnel_weights_quadrature(mu_at(unit(m, kMus)),
+                                                       alpha_at(unit(a, kAlphas)), 32));
+        return t;
+    }();
+    const Cell m = cell(safe_sqrt(cos_o), kMus), a = cell(safe_sqrt(alpha), kAlphas);
+    FresnelWeights sum{};
+    for (int corner = 0; corner < 4; ++corner) {
+        const int dm = corner & 1, da = corner >> 1;
+        const float w = (dm ? m.t : 1 - m.t) * (da ? a.t : 1 - a.t);
+        const FresnelWeights& at = table[static_cast<std::size_t>((a.i + da) * kMus + m.i + dm)];
+        for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += w * at[k];
+    }
+    return sum;
+}
+
+float dielectric_reflection_albedo(float cos_o, float alpha, float eta) noexcept {
+    const auto into = [](float mu, float a, float e) {
+        return dielectric_reflection_albedo_quadrature(mu, a, e, 12);
+    };
+    const auto out = [](float mu, float a, float e) {
+        return dielectric_reflection_albedo_quadrature(mu, a, 1.0f / e, 12);
+    };
+    if (eta < 1.0f) {
+        static const Table near(32, 32, 16, out), far(32, 32, 8, out, true);
+        return (eta < 1.0f / kFarEta ? far : near)(cos_o, alpha, 1.0f / eta);
+    }
+    if (eta > kFarEta) {
+        static const Table far(32, 32, 8, into, true);
+        return far(cos_o, alpha, eta);
+    }
+    static const Table near(32, 32, 16, into);
+    return near(cos_o, alpha, eta);
 }
 
 float mirror_albedo(float cos_o, float alpha) noexcept {
@@ -122,13 +191,18 @@ float mirror_albedo(float cos_o, float alpha) noexcept {
 }
 
 float glass_albedo(float cos_o, float alpha, float eta) noexcept {
-    static const Table into(40, 24, 16, [](float mu, float a, float e) {
+    const auto into = [](float mu, float a, float e) {
         return glass_albedo_quadrature(mu, a, e, 16);
-    });
-    static const Table out(40, 24, 16, [](float mu, float a, float e) {
+    };
+    const auto out = [](float mu, float a, float e) {
         return glass_albedo_quadrature(mu, a, 1.0f / e, 16);
-    });
-    return eta >= 1.0f ? into(cos_o, alpha, eta) : out(cos_o, alpha, 1.0f / eta);
+    };
+    if (eta > kFarEta || eta < 1.0f / kFarEta) {
+        static const Table far_into(40, 24, 8, into, true), far_out(40, 24, 8, out, true);
+        return eta >= 1.0f ? far_into(cos_o, alpha, eta) : far_out(cos_o, alpha, 1.0f / eta);
+    }
+    static const Table near_into(40, 24, 16, into), near_out(40, 24, 16, out);
+    return eta >= 1.0f ? near_into(cos_o, alpha, eta) : near_out(cos_o, alpha, 1.0f / eta);
 }
 
 template <class Quadrature>

@@ -1,6 +1,7 @@
 #pragma once
 // Reflectance at a smooth boundary.
 
+#include <algorithm>
 #include <cmath>
 
 #include "renderer/core/vec.h"
@@ -45,10 +46,14 @@ inline Color fresnel_f82(Color f0, Color f82, float cos_i) {
 
 /// OpenPBR's specular_weight scales the reflectance at normal incidence and, above 1, the index
 /// with it: returns the index whose F0 is weight times that of ior. OpenPBR 1.1, "Dielectric base".
+/// Within [1 / kMostIor, kMostIor]: all that tables and curves are made for.
+inline constexpr float kMostIor = 100;
 inline float modulated_ior(float ior, float weight) {
+    ior = std::min(std::max(ior, 1.0f / kMostIor), kMostIor);
     if (weight == 1.0f) return ior;
+    constexpr float kMostF0 = sqr((kMostIor - 1.0f) / (kMostIor + 1.0f));
     const float r = (ior - 1.0f) / (ior + 1.0f);
-    const float f0 = std::min(weight * r * r, 0.9999f);
+    const float f0 = std::min(weight * r * r, kMostF0);
     const float e = std::copysign(std::sqrt(f0), r);
     return (1.0f + e) / (1.0f - e);
 }

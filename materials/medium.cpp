@@ -43,7 +43,7 @@ Medium subsurface_medium(const SurfaceParams& p) {
     Medium m;
     m.anisotropy = std::clamp(p.subsurface_scatter_anisotropy, -0.99f, 0.99f);
     m.extinction = by_channel(p.subsurface_radius_scale, Color(0.0f), [&](float scale, float) {
-        return 1.0f / std::max(scale * p.subsurface_radius, 1e-6f);
+        return 1.0f / std::max(scale * p.subsurface_radius, 1e-20f);
     });
     m.albedo = by_channel(p.subsurface_color, Color(0.0f), [&](float c, float) {
         return single_scattering_albedo(c, m.anisotropy);

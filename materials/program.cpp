@@ -209,6 +209,7 @@ void ShaderProgram::compile(CurveCache& cache) {
         facts_.vertex_color |= graph->reads_vertex_color();
     }
     varies_ = !varying_.empty() || m_.use_vertex_color;
+    compile_covering();
     p.thin_walled = m_.geometry_thin_walled;
     constant_ = Surface(p);
     transmission_ = transmission_medium(p);
@@ -269,6 +270,23 @@ void ShaderProgram::compile_emission() {
                                emission_graph_.reads_vertex_color();
 }
 
+// Both ways of finding the light must see it through the same layers: what light sampling cannot
+// read of them makes the emission one that is found by hits alone.
+void ShaderProgram::compile_covering() {
+    facts_.emission_covered = facts_.emissive && (facts_.coat || !zero(m_.fuzz_weight));
+    if (!facts_.emission_covered) return;
+    covering_varies_ = m_.coat_color.varies();
+    for (const FloatInput* input :
+         {&m_.coat_weight, &m_.coat_roughness, &m_.coat_roughness_anisotropy, &m_.coat_ior,
+          &m_.fuzz_weight, &m_.fuzz_roughness, &m_.transmission_weight, &m_.base_metalness})
+        covering_varies_ |= input->varies();
+    if (!covering_varies_) return;
+    facts_.emission_textured = true;
+    facts_.emission_by_hit |= graph_.reads_attributes();
+    facts_.emission_geometry |=
+        graph_.reads_geometry() || graph_.reads_tangent() || graph_.reads_vertex_color();
+}
+
 void ShaderProgram::note_varying(ColorInput MaterialDesc::*input, Color SurfaceParams::*param) {
     const auto [low, high] = limits_of(input);
     add_varying({.color = input, .color_param = param, .low = low, .high = high}, (m_.*input).node,
@@ -324,7 +342,17 @@ Color ShaderProgram::base_color(const ShadeInput& in, const TextureStore* store)
     return p.base_color * p.base_weight;
 }
 
-Color ShaderProgram::emission(const ShadeInput& in, const TextureStore* store) const noexcept {
+Color ShaderProgram::emission(const ShadeInput& in, const TextureStore* store,
+                              float outward) const noexcept {
+    const Color bare = bare_emission(in, store);
+    if (!facts_.emission_covered) return bare;
+    const auto covered = [&](const Surface& s) {
+        return bare * s.covering(std::fabs(outward), outward >= 0.0f);
+    };
+    return covering_varies_ ? covered(varied(in, store)) : covered(constant_);
+}
+
+Color ShaderProgram::bare_emission(const ShadeInput& in, const TextureStore* store) const noexcept {
     constexpr float kMost = 1e20f;
     GraphRun run(emission_graph_, in, store);
     const float luminance = m_.emission_luminance.node >= 0
@@ -335,9 +363,9 @@ Color ShaderProgram::emission(const ShadeInput& in, const TextureStore* store) c
     return kept(color, 0.0f, kMost) * (kept(luminance, 0.0f, kMost) * (1.0f / kLumensPerWatt));
 }
 
-Color ShaderProgram::visible_emission(const ShadeInput& in,
-                                      const TextureStore* store) const noexcept {
-    const Color c = emission(in, store);
+Color ShaderProgram::visible_emission(const ShadeInput& in, const TextureStore* store,
+                                      float outward) const noexcept {
+    const Color c = emission(in, store, outward);
     return facts_.cutout ? c * opacity(in, store) : c;
 }
 
@@ -355,7 +383,7 @@ Color ShaderProgram::mean_emission_of_graph(const TextureStore* store) const noe
         in.uv = {at(1), at(2)};
         in.p_object = in.p_world = Vec3f{at(3), at(4), at(5)} * 2.0f - Vec3f(1.0f);
         in.n = {0, 0, 1};
-        sum += emission(in, store);
+        sum += bare_emission(in, store);
     }
     const Color mean = sum * (1.0f / kPoints);
     return max_component(mean) > 0.0f ? mean : Color(1.0f / kLumensPerWatt);

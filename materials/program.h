@@ -25,7 +25,8 @@ struct ProgramFacts {
     bool emission_by_hit = false;    // or what only a hit knows: light sampling cannot ask
     bool emissive = false;
     bool emission_textured = false;
-    bool specular = false;  // any lobe other than Lambert's
+    bool emission_covered = false;  // by a coat or fuzz: it depends on the direction
+    bool specular = false;          // any lobe other than Lambert's
     bool coat = false;
     bool layers = false;  // fuzz, coat, film, rough or translucent body
     bool transmission = false;
@@ -59,12 +60,14 @@ public:
     }
     /// surface().base_color alone: all that a Lambertian surface has.
     Color base_color(const ShadeInput& in, const TextureStore* store) const noexcept;
-    /// Radiance leaving the surface by itself.
-    Color emission(const ShadeInput& in, const TextureStore* store) const noexcept;
+    /// Radiance leaving the surface by itself. outward: cosine between its geometric normal and the
+    /// way to the viewer, below zero where it is seen from behind.
+    Color emission(const ShadeInput& in, const TextureStore* store, float outward) const noexcept;
     /// Emission times opacity: what of it is there on average, for light sampling, whose shadow
     /// rays end before the surface and are not asked.
-    Color visible_emission(const ShadeInput& in, const TextureStore* store) const noexcept;
-    /// Mean emission over the texture, for choosing lights.
+    Color visible_emission(const ShadeInput& in, const TextureStore* store,
+                           float outward) const noexcept;
+    /// Mean emission over the texture, uncovered, for choosing lights.
     Color mean_emission(const TextureStore* store) const noexcept;
     /// 1: light stops here.
     float opacity(const ShadeInput& in, const TextureStore* store) const noexcept;
@@ -105,6 +108,8 @@ private:
     void add_varying(Varying v, int node, int output);
     SurfaceParams params(const ShadeInput& in, const TextureStore* store) const noexcept;
     Surface varied(const ShadeInput& in, const TextureStore* store) const noexcept;
+    Color bare_emission(const ShadeInput& in, const TextureStore* store) const noexcept;
+    void compile_covering();
     Color mean_emission_of_graph(const TextureStore* store) const noexcept;
     void compile(CurveCache& cache);
     void compile_relief();
@@ -122,6 +127,7 @@ private:
     Wire normal_, coat_normal_, tangent_, coat_tangent_, bump_;
     Wire opacity_, emission_color_, emission_luminance_;
     bool varies_ = false;
+    bool covering_varies_ = false;
     Medium transmission_, subsurface_;  // constant_'s
     ProgramFacts facts_;
     std::shared_ptr<const SurfaceCurves> curves_;  // shared: programs are copied into place

@@ -57,14 +57,19 @@ Color airy(float r12, Color r23, Color (&fringe)[3]) {
     return sum;
 }
 
+constexpr float kLeastFilm = 0.75f, kFilmFade = 0.6f;
+
 }  // namespace
 
 Color FilmFresnel::operator()(float cos_i) const {
     const Color plain = bare(cos_i);
-    const float sin2_film = (1.0f - cos_i * cos_i) / (film_eta * film_eta);
+    // A film thinner than what lies on it reflects all beyond its critical angle only if no wave
+    // reaches through it. Towards that angle it is faded out, and it is not let be thinner still.
+    const float index = std::max(film_eta, kLeastFilm);
+    const float sin2_film = (1.0f - cos_i * cos_i) / (index * index);
     if (!(weight > 0.0f) || sin2_film >= 1.0f) return plain;
     const float cos_film = std::sqrt(1.0f - sin2_film);
-    const Amplitudes top = dielectric_amplitudes(cos_i, cos_film, film_eta);
+    const Amplitudes top = dielectric_amplitudes(cos_i, cos_film, index);
     Color s, p;
     if (metal > 0.0f) {
         // A metal as a conductor of no phase of its own: its reflectance is kept, its colour too.
@@ -74,15 +79,16 @@ Color FilmFresnel::operator()(float cos_i) const {
         const float sin2_below = (1.0f - cos_i * cos_i) / (eta * eta);
         if (sin2_below >= 1.0f) return plain;
         const Amplitudes below =
-            dielectric_amplitudes(cos_film, std::sqrt(1.0f - sin2_below), eta / film_eta);
+            dielectric_amplitudes(cos_film, std::sqrt(1.0f - sin2_below), eta / index);
         s = Color(below.s), p = Color(below.p);
     }
-    const float opd = 2.0f * film_eta * thickness * cos_film;
+    const float opd = 2.0f * index * thickness * cos_film;
     Color fringe[3];
     for (int m = 1; m <= 3; ++m) fringe[m - 1] = to_rgb(fringe_xyz(opd * static_cast<float>(m)));
     const Color film = (airy(top.s, s, fringe) + airy(top.p, p, fringe)) * 0.5f;
     const Color bounded = min(max(film, Color(0.0f)), Color(1.0f));
-    return lerp(plain, bounded, weight);
+    const float near = index < 1.0f ? std::min(cos_film * (1.0f / kFilmFade), 1.0f) : 1.0f;
+    return lerp(plain, bounded, weight * near * near * (3.0f - 2.0f * near));
 }
 
 }  // namespace tessera

@@ -13,6 +13,7 @@ struct View {
     bool front = true;  // from outside
     bool walks = true;  // translucent bodies are walked through; else they are diffuse
     float eta = 0;      // index beyond over here for glass; 0: by the surface's ior, against air
+    float finest = 0;   // length by which rays start off the surface: finer is not resolved
     Frame coat;         // the coat's own frame, with wo on its side
 };
 
@@ -39,10 +40,18 @@ Color push_fuzz(const SurfaceParams& p, int lane, Lobes& lobes) {
     return Color(1.0f - p.fuzz_weight * fuzz.reflectance);
 }
 
+/// What comes through the layers above, of light that lobes below send: about the mirror direction,
+/// or all around.
+struct Passed {
+    Color glossy{1.0f}, matte{1.0f};
+};
+
 /// Pushes the coat under `weight`; returns what reaches the base and comes back through it.
-/// OpenPBR 1.1, "Coat": absorption along the refracted ray, darkening by internal reflection.
+/// OpenPBR 1.1, "Coat": absorption along both refracted rays, darkening by internal reflection. The
+/// way in is not asked for when a lobe's weight is made: for mirrors it is as long as the way out,
+/// for diffuse lobes the mean of all, for what lies between a mixture by roughness.
 template <class Lobes>
-Color push_coat(const Surface& surface, const View& view, Color weight, int lane, Lobes& lobes) {
+Passed push_coat(const Surface& surface, const View& view, Color weight, int lane, Lobes& lobes) {
     const SurfaceParams& p = surface.p;
     const float cos_o = std::max(view.coat.to_local(lobes.wo[lane]).z, 1e-4f);
     const float reflected = surface.coat_albedo(cos_o);
@@ -55,24 +64,22 @@ Color push_coat(const Surface& surface, const View& view, Color weight, int lane
     else
         lobes.push(lane, Framed<Rough>{{surface.coat_ggx, fresnel, Color(reflected)}, view.coat},
                    amount);
-    const Color tint =
-        power(p.coat_color, 1.0f / std::max(refracted_cosine(cos_o, p.coat_ior), 1e-3f));
-    const float k = surface.coat_reflection;
+    const float way_out = 1.0f / std::max(refracted_cosine(cos_o, p.coat_ior), 1e-3f);
+    const float mirrored = fresnel_dielectric(cos_o, p.coat_ior);
+    const float k = mirrored + (surface.coat_reflection - mirrored) * surface.coat_spread;
     const auto dark = [&](float below) {
-        return 1.0f + ((1.0f - k) / (1.0f - below * k) - 1.0f) * p.coat_darkening;
+        const float darkened = (1.0f - k) / std::max(1.0f - below * k, 1e-6f);
+        return 1.0f + (std::min(darkened, 1.0f) - 1.0f) * p.coat_darkening;
     };
     const Color& b = surface.below_coat;
-    const Color through = tint * Color(dark(b.x), dark(b.y), dark(b.z)) * (1.0f - reflected);
-    return lerp(Color(1.0f), through, p.coat_weight);
-}
-
-inline FilmFresnel film_on(const SurfaceParams& p, float eta, float outside = 1.0f) {
-    FilmFresnel f;
-    f.eta = eta;
-    f.film_eta = p.thin_film_ior / outside;
-    f.thickness = p.thin_film_thickness;
-    f.weight = p.thin_film_weight;
-    return f;
+    const Color through = Color(dark(b.x), dark(b.y), dark(b.z)) * (1.0f - reflected);
+    // coat_color is what is left after both ways, each straight.
+    const auto under = [&](float way_in) {
+        const Color tint = power(p.coat_color, 0.5f * (way_in + way_out));
+        return lerp(Color(1.0f), tint * through, p.coat_weight);
+    };
+    const float way_glossy = way_out + (surface.coat_way - way_out) * p.specular_roughness;
+    return {under(way_glossy), under(surface.coat_way)};
 }
 
 template <class Lobes>
@@ -85,7 +92,7 @@ void push_metal(const Surface& surface, Color weight, int lane, Lobes& lobes) {
     const Color amount = weight * gain * std::min(p.specular_weight, 1.0f);
     if constexpr (Lobes::template kHas<RoughReflection<FilmFresnel>>) {
         if (p.thin_film_weight > 0.0f) {
-            FilmFresnel film = film_on(p, 1.0f);
+            FilmFresnel film = surface.film_on(1.0f, surface.film_outside);
             film.metal = 1.0f, film.f0 = fresnel.f0, film.f82 = fresnel.f82;
             return push_reflection(surface.ggx, film, amount, film(cos_o) * e, lane, lobes);
         }
@@ -99,19 +106,33 @@ Color push_boundary(const Surface& surface, Color weight, int lane, Lobes& lobes
     const SurfaceParams& p = surface.p;
     const float eta = surface.boundary_eta, cos_o = lobes.wo.z[lane];
     if (!(eta > 1.0f + kSameIndex)) return Color(0.0f);
-    const float bare = surface.boundary_albedo(cos_o);
     const Color amount = weight * p.specular_color;
     if constexpr (Lobes::template kHas<RoughReflection<FilmFresnel>>) {
         if (p.thin_film_weight > 0.0f) {
-            const FilmFresnel film = film_on(p, eta);
-            const float plain = std::max(fresnel_dielectric(cos_o, eta), 1e-6f);
-            const Color reflected = min(film(cos_o) * (bare / plain), Color(1.0f));
-            push_reflection(surface.ggx, film, amount, reflected, lane, lobes);
+            const Color reflected = surface.film_albedo(cos_o);
+            push_reflection(surface.ggx, surface.boundary_film, amount, reflected, lane, lobes);
             return p.specular_color * reflected;
         }
     }
+    const float bare = surface.boundary_albedo(cos_o);
     push_reflection(surface.ggx, DielectricFresnel{eta}, amount, Color(bare), lane, lobes);
     return p.specular_color * bare;
+}
+
+/// The share of each channel that is walked through a translucent body. Where a free path comes
+/// near the length by which rays start off the surface, walks would start too deep and come out too
+/// dark: their limit, Lambert's surface of the same albedo, takes their place. At the lower bound a
+/// start is off by a hundredth of a free path.
+inline Color walked_share(const SurfaceParams& p, float finest) {
+    constexpr float kNone = 100.0f, kAll = 400.0f;
+    const auto share = [&](float scale) {
+        const float paths = scale * p.subsurface_radius;
+        const float t =
+            clamp01((paths - kNone * finest) / std::max((kAll - kNone) * finest, 1e-30f));
+        return t * t * (3.0f - 2.0f * t);
+    };
+    const Color& s = p.subsurface_radius_scale;
+    return {share(s.x), share(s.y), share(s.z)};
 }
 
 /// The diffuse or translucent body.
@@ -128,7 +149,9 @@ void push_body(const SurfaceParams& p, const View& view, Color weight, int lane,
                        weight * p.subsurface_color * (share * forward));
             also = p.subsurface_color * (share * (1.0f - forward));
         } else if (share > 0.0f && view.front && view.walks) {
-            lobes.push(lane, SubsurfaceEntry{p.subsurface_color}, weight * share);
+            const Color walked = walked_share(p, view.finest) * share;
+            lobes.push(lane, SubsurfaceEntry{p.subsurface_color}, weight * walked);
+            also = p.subsurface_color * (Color(share) - walked);
         } else {
             also = p.subsurface_color * share;
         }
@@ -159,7 +182,8 @@ void push_glass(const Surface& surface, const Fresnel& fresnel, Color weight, in
     constexpr bool kBare = std::is_same_v<Fresnel, DielectricFresnel>;
     if (p.thin_walled) {
         if (smooth) return lobes.push(lane, SmoothSheet<Fresnel>{glass}, weight);
-        const float gain = kBare ? 1.0f / surface.metal_albedo(cos_o) : 1.0f;
+        // Both sides lose alike, whatever Fresnel says.
+        const float gain = 1.0f / surface.metal_albedo(cos_o);
         return lobes.push(lane, RoughSheet<Fresnel>{{glass, surface.ggx, gain}}, weight);
     }
     if (smooth || std::fabs(eta - 1.0f) < kSameIndex)
@@ -176,8 +200,9 @@ void push_transmission(const Surface& surface, const View& view, Color weight, i
     const float eta = view.eta > 0.0f ? view.eta : against_air;
     if constexpr (Lobes::template kHas<RoughGlass<FilmFresnel>>) {
         if (surface.p.thin_film_weight > 0.0f) {
-            const float outside = view.front || surface.p.thin_walled ? 1.0f : surface.ior;
-            return push_glass(surface, film_on(surface.p, eta, outside), weight, lane, lobes);
+            const bool within = !view.front && !surface.p.thin_walled;
+            const float outside = within ? surface.ior : surface.film_outside;
+            return push_glass(surface, surface.film_on(eta, outside), weight, lane, lobes);
         }
     }
     push_glass(surface, DielectricFresnel{eta}, weight, lane, lobes);
@@ -194,20 +219,22 @@ void openpbr_lobes(const Surface& surface, const View& view, int lane, Lobes& lo
     const float clear = (1.0f - metal) * p.transmission_weight;
     const float opaque = (1.0f - metal) * (1.0f - p.transmission_weight);
     Color weight(1.0f);
+    openpbr::Passed below;
     if constexpr (Lobes::template kHas<FuzzLobe>) {
         // The layers lie on the outside; through glass they are not seen from within.
         const bool outside = view.front || clear == 0.0f;
         if (p.fuzz_weight > 0.0f && outside) weight = openpbr::push_fuzz(p, lane, lobes);
         if (p.coat_weight > 0.0f && outside)
-            weight *= openpbr::push_coat(surface, view, weight, lane, lobes);
+            below = openpbr::push_coat(surface, view, weight, lane, lobes);
     }
+    const Color glossy = weight * below.glossy, matte = weight * below.matte;
     if (opaque > 0.0f) {
-        const Color reflected = openpbr::push_boundary(surface, weight * opaque, lane, lobes);
-        openpbr::push_body(p, view, weight * (Color(1.0f) - reflected) * opaque, lane, lobes);
+        const Color reflected = openpbr::push_boundary(surface, glossy * opaque, lane, lobes);
+        openpbr::push_body(p, view, matte * (Color(1.0f) - reflected) * opaque, lane, lobes);
     }
-    if (metal > 0.0f) openpbr::push_metal(surface, weight * metal, lane, lobes);
+    if (metal > 0.0f) openpbr::push_metal(surface, glossy * metal, lane, lobes);
     if constexpr (Lobes::template kHas<RoughGlass<DielectricFresnel>>) {
-        if (clear > 0.0f) openpbr::push_transmission(surface, view, weight * clear, lane, lobes);
+        if (clear > 0.0f) openpbr::push_transmission(surface, view, glossy * clear, lane, lobes);
     }
 }
 

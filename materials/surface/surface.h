@@ -10,6 +10,7 @@
 #include "materials/energy.h"
 #include "materials/ggx.h"
 #include "materials/surface/params.h"
+#include "materials/thin_film.h"
 
 namespace tessera {
 
@@ -32,7 +33,13 @@ struct Surface {
     float ior = 1;              // specular_weight included
     float boundary_eta = 1;     // of the opaque base's boundary, always entered from outside: >= 1
     float coat_reflection = 0;  // internal diffuse reflectance of the coat: the base's darkening
-    Color below_coat{0.0f};     // albedo of what lies below the coat, roughly
+    float coat_spread = 0;      // 0: the base mirrors light back into the coat, 1: scatters it
+    float coat_way = 1;         // mean of 1 / cosine inside the coat of light from all around
+    Color below_coat{0.0f};     // albedo of what lies below the coat at normal incidence
+    float film_outside = 1;     // index of what lies on a thin film
+    FilmFresnel boundary_film;  // of the opaque base, if a film is on it
+    // Reflectance at the Fresnel nodes of the opaque base's rough boundary, if a film is on it.
+    std::array<Color, kFresnelNodes> film_nodes;
     const SurfaceCurves* curves = nullptr;
 
     explicit Surface(const SurfaceParams& params);
@@ -46,12 +53,20 @@ struct Surface {
         if (curves && curves->boundary) return (*curves->boundary)(cos_o);
         return varied_boundary_albedo(cos_o);
     }
+    /// The thin film on a boundary of relative index eta, under something of index `outside`.
+    FilmFresnel film_on(float eta, float outside) const;
+    /// Share of light that the opaque base's boundary sends back with its film.
+    Color film_albedo(float cos_o) const;
     float metal_albedo(float cos_o) const;
     float coat_albedo(float cos_o) const;
+    /// What comes out through coat and fuzz of light that the base sends by itself.
+    Color covering(float cos_o, bool front) const;
     /// eta: beyond over here.
     float glass_albedo_for(float cos_o, float eta) const;
 
 private:
+    void lay_film();
+    void look_below_coat();
     float varied_boundary_albedo(float cos_o) const;
 };
 

@@ -17,7 +17,7 @@ struct OpenPbrInput {
 template <class Visit>
 void visit_openpbr(Visit visit) {
     using M = MaterialDesc;
-    constexpr double kMany = 1e10;
+    constexpr double kMany = 1e10, kThinnest = 0.01, kDensest = 100;
     const auto unit = [&](auto member, const char* name, const char* help) {
         visit(member, OpenPbrInput{name, 0, 1, help});
     };
@@ -31,13 +31,15 @@ void visit_openpbr(Visit visit) {
          "0 Lambert, 1 dusty: flat, bright at the edges.");
     unit(&M::base_metalness, "base_metalness", "0 dielectric, 1 metal.");
 
-    unit(&M::specular_weight, "specular_weight", "Amount of the specular reflection.");
+    range(&M::specular_weight, "specular_weight", 0, kMany,
+          "Amount of the specular reflection; above 1 a dielectric reflects more than its index "
+          "says.");
     unit(&M::specular_color, "specular_color",
          "Tint of the specular reflection; of a metal: its colour at the edge.");
     unit(&M::specular_roughness, "specular_roughness", "0 mirror, 1 dull.");
     unit(&M::specular_roughness_anisotropy, "specular_roughness_anisotropy",
          "Stretch of the highlight along the tangent.");
-    range(&M::specular_ior, "specular_ior", 0.1, 10, "Index of refraction.");
+    range(&M::specular_ior, "specular_ior", kThinnest, kDensest, "Index of refraction.");
 
     unit(&M::transmission_weight, "transmission_weight", "0 opaque, 1 glass.");
     unit(&M::transmission_color, "transmission_color",
@@ -52,7 +54,7 @@ void visit_openpbr(Visit visit) {
           "-1 scatters back, 0 alike, 1 on.");
     unit(&M::transmission_dispersion_scale, "transmission_dispersion_scale",
          "Amount of dispersion: 1 that of the Abbe number.");
-    range(&M::transmission_dispersion_abbe_number, "transmission_dispersion_abbe_number", 9, 91,
+    range(&M::transmission_dispersion_abbe_number, "transmission_dispersion_abbe_number", 1, 1000,
           "Abbe number: the lower the more colour (diamond 55, flint glass 30).");
 
     unit(&M::subsurface_weight, "subsurface_weight", "0 opaque, 1 translucent body.");
@@ -69,7 +71,7 @@ void visit_openpbr(Visit visit) {
     unit(&M::coat_roughness, "coat_roughness", "0 mirror, 1 dull.");
     unit(&M::coat_roughness_anisotropy, "coat_roughness_anisotropy",
          "Stretch of the coat's highlight.");
-    range(&M::coat_ior, "coat_ior", 1, 3, "Index of refraction of the coat.");
+    range(&M::coat_ior, "coat_ior", kThinnest, kDensest, "Index of refraction of the coat.");
     unit(&M::coat_darkening, "coat_darkening",
          "How far the base darkens by reflection inside the coat.");
 
@@ -79,7 +81,8 @@ void visit_openpbr(Visit visit) {
 
     unit(&M::thin_film_weight, "thin_film_weight", "Amount of the thin film.");
     range(&M::thin_film_thickness, "thin_film_thickness", 0, 100, "Thickness in micrometres.");
-    range(&M::thin_film_ior, "thin_film_ior", 1, 3, "Index of refraction of the film.");
+    range(&M::thin_film_ior, "thin_film_ior", kThinnest, kDensest,
+          "Index of refraction of the film.");
 
     range(&M::emission_luminance, "emission_luminance", 0, 1e20,
           "Emitted luminance, cd/m2 (nits); 179 of them are 1 W/m2/sr.");

@@ -57,6 +57,11 @@ struct SubdivisionStatistics {
 struct Statistics {
     std::string version, scene, kernel, isa, integrator;
     int threads = 0, tile = 0, spp = 0, width = 0, height = 0;
+    int first_sample = 0;  // index of the first of each pixel
+    int resumed_spp = 0;   // of spp, those of earlier runs
+    double resumed_s = 0;  // that these took
+    int checkpoints = 0, checkpoints_failed = 0;
+    double checkpoint_s = 0;  // for which the workers rested
     std::uint64_t seed = 0;
     double load_s = 0, build_s = 0, render_s = 0, write_s = 0;
     RayCounts rays;
@@ -125,9 +130,18 @@ struct RenderSettings {
     /// cleared then. The others wait while on_snapshot runs.
     std::atomic<bool>* snapshot = nullptr;
     std::function<void(RenderResult&&)> on_snapshot;
+    int first_sample = 0;      // the scene's spp count from here; the sum below 2^24
+    std::string resume;        // film file of an earlier run to go on from; "": none
+    std::string checkpoint;    // film file to save to now and then, and at the end; "": none
+    double checkpoint_s = 60;  // seconds between two
+    std::string film_file;     // film file to write at the end; "": none
+    /// What goes wrong without ending the render: checkpoints. From any thread.
+    std::function<void(const std::string&)> warn;
 };
 
-/// Never throws from the loop; Error(memory) if the film does not fit.
+/// Never throws from the loop; Error(memory) if the film does not fit, Error(scene) if resume is no
+/// film of this picture, Error(usage) if it has other samples than asked for, Error(output) if
+/// film_file cannot be written.
 RenderResult render(const Scene& scene, const RenderSettings& settings = {});
 
 /// What `tessera info` shows: the statistics of a scene without a render.

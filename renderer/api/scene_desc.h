@@ -443,6 +443,7 @@ struct FilmDesc {
     double filter_width_px = 3;                // full width of the support
     std::string working_space = "lin_rec709";  // or "acescg"
     std::vector<std::string> aovs;             // beyond beauty; empty = Z, N, P, albedo
+    SourceLoc aovs_loc;
     double ao_distance = 0;  // how far ambient occlusion looks, scene units; 0 = without end
 };
 

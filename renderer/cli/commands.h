@@ -18,6 +18,7 @@ struct CommandLine {
 };
 
 void add_render(CLI::App& app, CommandLine& line);
+void add_merge(CLI::App& app, CommandLine& line);
 void add_info(CLI::App& app, CommandLine& line);
 void add_bench(CLI::App& app, CommandLine& line);
 void add_version(CLI::App& app, CommandLine& line);

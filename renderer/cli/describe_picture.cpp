@@ -5,8 +5,6 @@
 #include <array>
 #include <ctime>
 
-#include "renderer/scene/scene.h"
-
 namespace tessera {
 namespace {
 
@@ -27,20 +25,21 @@ std::string date_now() {
 
 }  // namespace
 
-void describe_picture(LayeredImage& image, const Scene& scene, const Statistics& s,
-                      const std::string& command, bool deterministic) {
+void describe_picture(LayeredImage& image, const std::string& scene_hash, const Statistics& s,
+                      const std::string& command, const OutputDesc& format) {
     auto& m = image.metadata;
     m.emplace_back("tessera/version", s.version);
     m.emplace_back("tessera/scene", s.scene);
-    m.emplace_back("tessera/sceneHash", scene.hash());
+    m.emplace_back("tessera/sceneHash", scene_hash);
     m.emplace_back("tessera/spp", s.spp);
+    if (s.first_sample > 0) m.emplace_back("tessera/firstSample", s.first_sample);
     m.emplace_back("tessera/seed", std::to_string(s.seed));
     m.emplace_back("tessera/embreeIsa", s.isa);
-    m.emplace_back("tessera/colorSpace", scene.film().working_space);
+    m.emplace_back("tessera/colorSpace", image.working_space);
     if (!s.complete) m.emplace_back("tessera/partial", 1);
-    if (deterministic) return;
-    m.emplace_back("tessera/seconds", static_cast<float>(s.render_s));
-    m.emplace_back("tessera/threads", s.threads);
+    if (format.deterministic_metadata) return;
+    m.emplace_back("tessera/seconds", static_cast<float>(s.resumed_s + s.render_s));
+    if (s.threads > 0) m.emplace_back("tessera/threads", s.threads);
     m.emplace_back("tessera/command", command);
     m.emplace_back("tessera/host", host_name());
     m.emplace_back("capDate", date_now());

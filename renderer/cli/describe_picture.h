@@ -7,9 +7,9 @@
 
 namespace tessera {
 
-/// Adds "tessera/..." attributes, and the standard capDate unless deterministic: then nothing that
-/// another run of the same scene could differ in.
-void describe_picture(LayeredImage& image, const Scene& scene, const Statistics& stats,
-                      const std::string& command, bool deterministic);
+/// Adds "tessera/..." attributes, and the standard capDate unless the format says deterministic:
+/// then nothing that another run of the same scene could differ in.
+void describe_picture(LayeredImage& image, const std::string& scene_hash, const Statistics& stats,
+                      const std::string& command, const OutputDesc& format);
 
 }  // namespace tessera

@@ -1,5 +1,5 @@
 #pragma once
-// Which pixels are rendered and which are written, where they are not the frame.
+// Which pixels are rendered, where they are not the frame.
 
 #include <optional>
 
@@ -7,14 +7,8 @@
 
 namespace tessera {
 
-struct FrameWindow {
-    std::optional<PixelWindow> render;  // for FilmDesc::crop
-    PixelWindow write;
-};
-
-/// A crop goes before overscan. Tiles start at multiples of their size from the frame's corner, so
-/// what is rendered beyond the left and top edges is whole tiles, and cut afterwards. Throws
+/// For FilmDesc::crop: the crop that is asked for, else the frame with its overscan. Throws
 /// Error(usage) where the picture has nothing beyond its edges.
-FrameWindow frame_window(const SceneDesc& scene, int tile);
+std::optional<PixelWindow> frame_window(const SceneDesc& scene);
 
 }  // namespace tessera

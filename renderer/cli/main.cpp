@@ -62,11 +62,12 @@ int report(const tessera::Error& e) {
 }
 
 tessera::Error unknown_command(const std::string& word) {
-    const std::vector<std::string> known{"render",   "info",    "bench",
-                                         "exrcheck", "flatten", "version"};
+    const std::vector<std::string> known{"render", "merge",    "flatten", "info",
+                                         "bench",  "exrcheck", "version"};
     return {tessera::ExitCode::usage,
             "tessera: unknown command '" + word + "'" + tessera::did_you_mean(word, known) +
-                "; there are render, info, bench, exrcheck, flatten and version (tessera --help)"};
+                "; there are render, merge, flatten, info, bench, exrcheck and version (tessera "
+                "--help)"};
 }
 
 }  // namespace
@@ -93,6 +94,7 @@ int main(int argc, char** argv) {
     tessera::CommandLine line;
     for (int i = 0; i < argc; ++i) line.text += (i ? " " : "") + std::string(argv[i]);
     tessera::add_render(app, line);
+    tessera::add_merge(app, line);
     tessera::add_info(app, line);
     tessera::add_bench(app, line);
     tessera::add_exrcheck(app, line);

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cstdlib>
 
-#include "renderer/image/pass_names.h"
+#include "renderer/film/pass.h"
 
 namespace tessera {
 namespace {
@@ -42,6 +42,12 @@ void parse_overscan(const std::string& text, FilmDesc& film) {
 }  // namespace
 
 void OutputOptions::add_to(CLI::App& app) {
+    add_format_to(app);
+    app.add_option("--overscan", overscan,
+                   "Render beyond each edge of the frame: 0.1 of its size, or 16px");
+}
+
+void OutputOptions::add_format_to(CLI::App& app) {
     app.add_option("--exr", exr,
                    "single: one part; multipart: a part per layer; split: a file per layer, <aov> "
                    "in -o stands for its name")
@@ -51,8 +57,6 @@ void OutputOptions::add_to(CLI::App& app) {
         ->check(CLI::IsMember({"none", "zips", "zip", "piz", "dwaa", "dwab"}));
     app.add_option("--dwa-level", dwa_level, "Loss of dwaa and dwab (default 45)")
         ->check(CLI::Range(0.0, 1000.0));
-    app.add_option("--overscan", overscan,
-                   "Render beyond each edge of the frame: 0.1 of its size, or 16px");
     app.add_flag("--float", all_float, "All channels as 32-bit float");
     app.add_flag("--crop-pad", crop_pad, "The whole frame, black where nothing was rendered");
     app.add_flag("--deterministic-metadata", deterministic,
@@ -90,11 +94,12 @@ void check_codec(const SceneDesc& scene) {
     if (o.all_float)
         usage("--compression " + codec + ": stores colours as halves, --float has no use with it");
     if (o.exr != ExrLayout::single) return;
-    const auto& aovs = scene.film.aovs;
-    const auto data = std::find_if_not(aovs.begin(), aovs.end(), is_colour_pass);
-    if (!aovs.empty() && data == aovs.end()) return;
-    usage("--compression " + codec + ": would damage " +
-          (aovs.empty() ? "Z, N and P" : "'" + *data + "'") +
+    const Passes passes = choose_passes(scene.film.aovs, {"default"}, scene.film.aovs_loc);
+    const auto data = std::find_if(passes.begin(), passes.end(),
+                                   [](const Pass& p) { return p.kind == LayerKind::data; });
+    if (data == passes.end()) return;
+    usage("--compression " + codec + ": would damage '" + (data->name.empty() ? "Z" : data->name) +
+          "'" +
           ", and a single-part file has one codec; use --exr multipart or split, where data stays "
           "lossless, or ask for colour passes only (--aov)");
 }

@@ -18,6 +18,8 @@ struct OutputOptions {
     bool all_float = false, crop_pad = false, deterministic = false;
 
     void add_to(CLI::App& app);
+    /// Those that say nothing of what is rendered.
+    void add_format_to(CLI::App& app);
     /// Throws Error(usage) for what excludes each other. SOURCE_DATE_EPOCH in the environment
     /// asks for deterministic metadata.
     void apply(SceneDesc& scene) const;

@@ -1,7 +1,6 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -14,18 +13,19 @@
 #include "renderer/cli/console.h"
 #include "renderer/cli/describe_picture.h"
 #include "renderer/cli/frame_window.h"
-#include "renderer/cli/manifest_files.h"
+#include "renderer/cli/long_render.h"
 #include "renderer/cli/output_check.h"
 #include "renderer/cli/output_options.h"
+#include "renderer/cli/picture_files.h"
 #include "renderer/cli/progress.h"
 #include "renderer/cli/scene_options.h"
 #include "renderer/cli/signals.h"
 #include "renderer/cli/snapshots.h"
 #include "renderer/cli/tev_display.h"
 #include "renderer/core/log.h"
+#include "renderer/film/film_file.h"
 #include "renderer/film/pass_docs.h"
 #include "renderer/image/atomic_file.h"
-#include "renderer/image/colour_space.h"
 #include "renderer/scene/scene.h"
 
 namespace tessera {
@@ -33,6 +33,7 @@ namespace {
 
 struct RenderOptions {
     SceneOptions scene;
+    LongRenderOptions runs;
     OutputOptions out;
     std::string output, preview, view, stats, display, deep;
     std::string progress = "auto", crypto_manifest = "embedded";
@@ -40,12 +41,6 @@ struct RenderOptions {
     bool no_progress = false, quiet = false;
     int verbose = 0;
 };
-
-// Throws for an unknown view before hours of rendering, not after.
-void check_view(const std::string& working_space, const std::string& view) {
-    std::array<float, 3> pixel{};
-    ColorSpaces(working_space).to_display(pixel, view);
-}
 
 std::string count(std::uint64_t n) {
     const double v = static_cast<double>(n);
@@ -64,10 +59,12 @@ void write_stats(const Statistics& s, const std::string& path) {
 }
 
 std::vector<OutputFile> outputs_of(const RenderOptions& o) {
-    return {{o.output, "--output", {".exr"}},
-            {o.preview, "--preview", {".png", ".jpg", ".jpeg"}},
-            {o.deep, "--deep", {".exr"}},
-            {o.stats == "-" ? "" : o.stats, "--stats", {}}};
+    std::vector<OutputFile> files{{o.output, "--output", {".exr", kFilmExtension}},
+                                  {o.preview, "--preview", {".png", ".jpg", ".jpeg"}},
+                                  {o.deep, "--deep", {".exr"}},
+                                  {o.stats == "-" ? "" : o.stats, "--stats", {}}};
+    for (const OutputFile& f : o.runs.outputs(o.output)) files.push_back(f);
+    return files;
 }
 
 void say_what_was_built(const Statistics& s, double load_s, bool quiet) {
@@ -87,8 +84,14 @@ void say_what_was_rendered(const Statistics& s) {
         return count(
             static_cast<std::uint64_t>(static_cast<double>(n) / std::max(s.render_s, 1e-6)));
     };
-    log_info(fmt::format("render   {} spp in {:.2f} s, {}samples/s, {}rays/s ({} threads)", s.spp,
-                         s.render_s, per_second(s.samples), per_second(s.rays.total()), s.threads));
+    const std::string before =
+        s.resumed_spp > 0 ? fmt::format(" ({} of them before)", s.resumed_spp) : "";
+    log_info(fmt::format("render   {} spp{} in {:.2f} s, {}samples/s, {}rays/s ({} threads)", s.spp,
+                         before, s.render_s, per_second(s.samples), per_second(s.rays.total()),
+                         s.threads));
+    if (s.checkpoints + s.checkpoints_failed > 0)
+        log_verbose(fmt::format("{} checkpoints, {} failed; the render rested {:.3g} s for them",
+                                s.checkpoints, s.checkpoints_failed, s.checkpoint_s));
     if (s.textures_cached > 0)
         log_info(fmt::format(
             "textures {} files in memory, {} in the tile cache; {} of {} MiB, {} MiB read",
@@ -147,6 +150,12 @@ RenderResult render_with_progress(const Scene& scene, const RenderOptions& o,
     settings.progress = [&](const Progress& p) { printer.show(p); };
     settings.snapshot = &snapshot_wanted();
     settings.on_snapshot = [&](RenderResult&& r) { snapshots.start(std::move(r)); };
+    settings.first_sample = o.runs.first_sample;
+    settings.resume = o.runs.resume;
+    settings.checkpoint = o.runs.checkpoint;
+    settings.checkpoint_s = o.runs.checkpoint_s;
+    if (names_film_file(o.output)) settings.film_file = o.output;
+    settings.warn = [&](const std::string& text) { printer.warn(text); };
     if (display) {
         settings.on_tile = [=](const PixelWindow& tile, const std::vector<Layer>& layers) {
             display->show(tile, layers);
@@ -158,29 +167,37 @@ RenderResult render_with_progress(const Scene& scene, const RenderOptions& o,
     return result;
 }
 
-// The window that was asked for, or the whole frame where it is padded (and overscan with it).
-void fit_to_frame(LayeredImage& image, PixelWindow window, bool pad) {
-    if (pad)
-        window = {std::min(window.x0, 0), std::min(window.y0, 0), std::max(window.x1, image.width),
-                  std::max(window.y1, image.height)};
-    if (window != image.window) image = reframe(image, window);
+// Depths are not in film files.
+void check_deep(const RenderOptions& o) {
+    const bool film = std::filesystem::path(o.output).extension() == kFilmExtension;
+    if (o.deep.empty() || (!film && o.runs.checkpoint.empty() && o.runs.resume.empty())) return;
+    throw Error(ExitCode::usage,
+                "--deep: film files hold no depths; not with --checkpoint, --resume or an output "
+                "that is a film file");
 }
 
 // What the header says of the picture; names of mattes are left to the file that has them.
-void write_deep(RenderResult& r, const PixelWindow& window, const std::string& path,
-                const WriteOptions& options, WriteReport& report) {
+void write_deep(RenderResult& r, const std::string& path, const WriteOptions& options,
+                WriteReport& report) {
     for (const auto& entry : r.image.metadata)
         if (!entry.first.starts_with("cryptomatte/")) r.deep->metadata.push_back(entry);
-    const WriteReport deep = write_deep_exr(*r.deep, window, path, options);
+    const WriteReport deep = write_deep_exr(*r.deep, r.image.window, path, options);
     report.bytes += deep.bytes;
     report.clamped += deep.clamped;
     report.non_finite += deep.non_finite;
     report.files.push_back(path);
 }
 
-std::string names(const std::vector<std::string>& files) {
-    if (files.size() == 1) return files[0];
-    return fmt::format("{} and {} more", files[0], files.size() - 1);
+// Hours of rendering are not lost with a full disk.
+WriteReport write_picture(const Snapshots::Write& write, RenderResult& result,
+                          const std::string& checkpoint) {
+    try {
+        return write(result);
+    } catch (const Error& e) {
+        if (checkpoint.empty() || e.code() != ExitCode::output) throw;
+        throw Error(e.code(), std::string(e.what()) + "\nthe samples are in " + checkpoint +
+                                  ": --resume " + checkpoint + " writes the picture");
+    }
 }
 
 int run_render(RenderOptions options, const std::string& command) {
@@ -192,20 +209,26 @@ int run_render(RenderOptions options, const std::string& command) {
     }
     catch_signals();
     if (!options.display.empty()) parse_viewer_address(options.display);
+    check_deep(options);
     if (options.progress == "tractor" && options.stats == "-")
         throw Error(ExitCode::usage,
                     "--progress tractor: standard output is that of --stats -; give it a file");
     check_outputs(outputs_of(options));
+    options.runs.apply(options.scene.spp, options.output);
 
     double load_s = 0;
     SceneDesc desc = options.scene.load(load_s);
     check_outputs_spare(outputs_of(options), desc);
     options.out.apply(desc);
     check_codec(desc);
-    const OutputDesc output = desc.output;
-    if (output.exr == ExrLayout::split) check_split_spares(outputs_of(options)[0], desc);
-    const FrameWindow window = frame_window(desc, options.scene.tile);
-    desc.film.crop = window.render;
+    const PictureFiles files{options.output,
+                             options.preview,
+                             options.view,
+                             desc.output,
+                             options.crypto_manifest == "sidecar",
+                             options.scene.threads};
+    if (files.format.exr == ExrLayout::split) check_split_spares(outputs_of(options)[0], desc);
+    desc.film.crop = frame_window(desc);
     if (!options.preview.empty()) check_view(desc.film.working_space, options.view);
     const ScenePtr scene = build_scene(std::move(desc), options.scene.build_options());
     say_what_was_built(describe(*scene), load_s, options.quiet);
@@ -213,27 +236,23 @@ int run_render(RenderOptions options, const std::string& command) {
     ProgressPrinter printer(progress_style(options));
     const auto display = open_display(scene->film(), options, printer);
     const auto write = [&](RenderResult& r) {
-        fit_to_frame(r.image, window.write, output.crop_pad);
-        describe_picture(r.image, *scene, r.stats, command, output.deterministic_metadata);
-        if (options.crypto_manifest == "sidecar")
-            write_manifests(move_manifests(r.image.metadata, options.output));
-        const WriteOptions how = write_options(output, options.scene.threads);
-        WriteReport report = write_exr(r.image, options.output, how);
-        if (r.deep) write_deep(r, r.image.window, options.deep, how, report);
-        if (!options.preview.empty()) write_preview(r.image, options.preview, options.view);
+        describe_picture(r.image, scene->hash(), r.stats, command, files.format);
+        WriteReport report = write_picture_files(r.image, files);
+        if (r.deep)
+            write_deep(r, options.deep, write_options(files.format, options.scene.threads), report);
         return report;
     };
     RenderResult result = render_with_progress(*scene, options, write, printer, display.get());
     Statistics& s = result.stats;
     s.load_s = load_s;
-    if (!result.complete && s.samples == 0) {
+    if (!result.complete && s.samples == 0 && s.resumed_spp == 0) {
         throw Error(static_cast<ExitCode>(signal_exit_code()),
                     "stopped by a signal before anything was rendered; nothing saved");
     }
     say_what_was_rendered(s);
 
     const auto start = std::chrono::steady_clock::now();
-    const WriteReport written = write(result);
+    const WriteReport written = write_picture(write, result, options.runs.checkpoint);
     s.write_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     s.half_clamped = written.clamped;
     s.half_non_finite = written.non_finite;
@@ -243,6 +262,8 @@ int run_render(RenderOptions options, const std::string& command) {
     log_info(fmt::format("wrote    {} ({:.1f} MiB, {:.2f} s), peak memory {} MiB{}",
                          names(written.files), static_cast<double>(written.bytes) / (1 << 20),
                          s.write_s, s.memory_peak >> 20, result.complete ? "" : ", partial"));
+    if (!result.complete && !options.runs.checkpoint.empty())
+        log_info("note: --resume " + options.runs.checkpoint + " goes on from here");
     if (display) display->close();
     return static_cast<int>(result.complete ? ExitCode::done : ExitCode::checkpoint);
 }
@@ -263,7 +284,8 @@ void add_render(CLI::App& app, CommandLine& line) {
                                               : text + " is no number of seconds above 0";
     };
     sub->add_option("-o,--output", o->output,
-                    "The EXR to write (default: the scene's name, in the current folder)")
+                    "The EXR to write (default: the scene's name, in the current folder), or a "
+                    ".tsf for tessera merge")
         ->check(named);
     sub->add_option("--preview", o->preview, "Also a .png or .jpg for the eye")->check(named);
     sub->add_option("--view", o->view, "OpenColorIO view of the preview (default: the config's)");
@@ -271,6 +293,7 @@ void add_render(CLI::App& app, CommandLine& line) {
     sub->add_option("--time", o->time_s,
                     "Seconds to render; passes until they are used, --spp at most")
         ->check(positive_seconds);
+    o->runs.add_to(*sub);
     sub->add_option("--display", o->display,
                     "HOST:PORT of a tev viewer that shows the picture as it grows")
         ->check(named);
@@ -303,7 +326,7 @@ void add_render(CLI::App& app, CommandLine& line) {
     sub->callback([o, &line] {
         line.run = [o, &line] {
             // With a time to fill and no count asked for, the time alone decides.
-            if (o->time_s > 0 && !o->scene.spp) o->scene.spp = 1 << 24;
+            if (o->time_s > 0 && !o->scene.spp && o->runs.samples.empty()) o->scene.spp = 1 << 24;
             return run_render(*o, line.text);
         };
     });

@@ -151,7 +151,10 @@ SceneDesc SceneOptions::load(double& load_s) const {
     if (!crop.empty()) apply_crop(window, crop, desc.film);
     if (spp) desc.render.spp = *spp;
     if (seed) desc.render.seed = *seed;
-    if (!aovs.empty()) desc.film.aovs = aovs;
+    if (!aovs.empty()) {
+        desc.film.aovs = aovs;
+        desc.film.aovs_loc = {std::make_shared<const std::string>("--aov")};
+    }
     load_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return desc;
 }

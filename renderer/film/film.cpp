@@ -333,13 +333,28 @@ std::size_t Film::bytes() const noexcept {
 }
 
 std::vector<Film::Array> Film::arrays() {
-    std::vector<Array> out{{"beauty", bytes_of(beauty_)}};
-    if (!nearest_.empty()) out.push_back({"nearest", bytes_of(nearest_)});
-    for (std::size_t p = 0; p < planes_.size(); ++p) {
-        const std::string name = passes_[p].name.empty() ? "Z" : passes_[p].name;
-        if (!planes_[p].sums.empty()) out.push_back({name + ".sums", bytes_of(planes_[p].sums)});
-        if (!planes_[p].nearest.empty())
-            out.push_back({name + ".nearest", bytes_of(planes_[p].nearest)});
+    std::vector<Array> out;
+    const std::vector<ArraySize> sizes = array_sizes(window_, passes_);
+    const auto add = [&](auto& v) {
+        if (!v.empty()) out.push_back({sizes[out.size()].name, bytes_of(v)});
+    };
+    add(beauty_);
+    add(nearest_);
+    for (Plane& plane : planes_) add(plane.sums), add(plane.nearest);
+    return out;
+}
+
+std::vector<Film::ArraySize> Film::array_sizes(const PixelWindow& window, const Passes& passes) {
+    const std::uint64_t n =
+        static_cast<std::uint64_t>(window.width()) * static_cast<std::uint64_t>(window.height());
+    std::vector<ArraySize> out{{"beauty", n * sizeof(Beauty)}};
+    if (std::any_of(passes.begin(), passes.end(), wants_nearest))
+        out.push_back({"nearest", n * sizeof(Nearest)});
+    for (const Pass& p : passes) {
+        if (how(p.source) == How::sums)
+            out.push_back({p.name + ".sums", n * sums_of(p) * sizeof(Sum)});
+        if (how(p.source) == How::nearest)
+            out.push_back({p.name + ".nearest", n * p.channels.size() * sizeof(float)});
     }
     return out;
 }

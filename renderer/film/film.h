@@ -95,6 +95,12 @@ public:
         std::span<std::byte> bytes;
     };
     std::vector<Array> arrays();
+    /// Names and sizes of the arrays of a film that is not there yet.
+    struct ArraySize {
+        std::string name;
+        std::uint64_t bytes = 0;
+    };
+    static std::vector<ArraySize> array_sizes(const PixelWindow& window, const Passes& passes);
 
 private:
     struct Beauty {

@@ -98,6 +98,8 @@ void append_bare(const Layer& layer, const WriteOptions& options, ExrFile& file)
     std::string names;
     for (const std::string& name : layer.channels) names += (names.empty() ? "" : ",") + name;
     file.metadata.emplace_back("tessera/channels", names);
+    // Of a lone channel most readers show luminance only; depth is known by its name.
+    if (channels.size() == 1 && channels[0].name != "Z") channels[0].name = "Y";
     if (channels.size() != 3 && channels.size() != 4) return;
     for (std::size_t i = 0; i < channels.size(); ++i) channels[i].name = "RGBA"[i];
 }

@@ -46,6 +46,20 @@ Imf::Compression codec_of(ExrCompression c) {
     return Imf::ZIP_COMPRESSION;
 }
 
+/// Cryptomatte's entries go with its layers: readers look for layers wherever they find entries.
+bool belongs(const std::string& name, const LayeredImage& image, const ExrFile& file) {
+    if (!name.starts_with("cryptomatte/")) return true;
+    const std::string key = name.substr(0, name.rfind('/') + 1) + "name";
+    for (const auto& [other, type] : image.metadata) {
+        if (other != key) continue;
+        for (const ExrPart& part : file.parts) {
+            for (const ExrChannel& channel : part.channels)
+                if (channel.name.starts_with(std::get<std::string>(type))) return true;
+        }
+    }
+    return false;
+}
+
 Imf::Header make_header(const LayeredImage& image, const ExrFile& file, const ExrPart& part,
                         float dwa_level) {
     Imf::Header header = exr_header(image.width, image.height, image.window, image.working_space);
@@ -63,7 +77,9 @@ Imf::Header make_header(const LayeredImage& image, const ExrFile& file, const Ex
         header.setName(part.name);
     }
     if (&part == file.parts.data()) {
-        put_metadata(image.metadata, header);
+        std::vector<std::pair<std::string, MetadataValue>> metadata = image.metadata;
+        std::erase_if(metadata, [&](const auto& m) { return !belongs(m.first, image, file); });
+        put_metadata(metadata, header);
         put_metadata(file.metadata, header);
     }
     return header;

@@ -29,23 +29,9 @@ std::string lower(std::string_view text) {
     return out;
 }
 
-bool drop_end(std::string_view& name, std::string_view end) {
-    if (!name.ends_with(end)) return false;
-    name.remove_suffix(end.size());
-    return true;
-}
-
 }  // namespace
 
 std::span<const std::string_view> beauty_parts() noexcept { return kBeautyParts; }
-
-bool is_colour_pass(const std::string& name) noexcept {
-    std::string_view part = name;
-    if (part == "beauty" || part.starts_with("RGBA_")) return true;
-    if (drop_end(part, "albedo")) return true;
-    drop_end(part, "_indirect") || drop_end(part, "_direct");
-    return std::find(kBeautyParts.begin(), kBeautyParts.end(), part) != kBeautyParts.end();
-}
 
 bool is_data_pass(std::string_view name) noexcept {
     return is_cryptomatte_pass(name) ||

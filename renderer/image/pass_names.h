@@ -10,9 +10,6 @@ namespace tessera {
 /// Passes that sum to beauty, one without its _direct and _indirect where both exist.
 std::span<const std::string_view> beauty_parts() noexcept;
 
-/// Light that a compositor multiplies and adds: may be half, and lossy when asked.
-bool is_colour_pass(const std::string& name) noexcept;
-
 /// Depth, positions, normals, motion, ids, mattes, variance: what only float without loss keeps.
 bool is_data_pass(std::string_view name) noexcept;
 bool is_cryptomatte_pass(std::string_view name) noexcept;

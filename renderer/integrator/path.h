@@ -199,8 +199,9 @@ private:
 
         // Emission, weighed against light sampling having found it.
         if (!program || program->facts().emissive) {
-            const Color e = program ? program->emission(shade_in_[i], scene_.textures())
-                                    : light_radiance(scene_.lights()[s.light], d, s.ng);
+            const Color e = program
+                                ? program->emission(shade_in_[i], scene_.textures(), -dot(s.ng, d))
+                                : light_radiance(scene_.lights()[s.light], d, s.ng);
             float weight = 1.0f;
             if (bsdf_pdf_[i] > 0.0f && s.light >= 0) {
                 weight = mis_power(bsdf_pdf_[i], scene_.lights().pdf(s.light, {from_[i].p}, d, s.p,
@@ -244,6 +245,7 @@ private:
             if (leaves_body(i)) viewer = ray_[i].d;
             const bool front = dot(s.ng, viewer) >= 0.0f;
             frame_.front.is[i] = front;
+            frame_.within.is[i] = !front && scene_.program(s.material).facts().glass;
             frame_.ng.set(i, front ? s.ng : -s.ng);
             frame_.even.set(i, front ? s.ns : -s.ns);
             frame_.lift.set(i, front ? s.lift : Vec3f{});
@@ -256,7 +258,7 @@ private:
         for (int i = 0; i < kLanes; ++i) {
             const Vec3f even = frame_.even[i];
             const Vec3f guard = pick(is_lifted(frame_.lift[i]), even, frame_.ng[i]);
-            const Frame f(consistent_normal(ns[i], guard, wo[i]));
+            const Frame f(frame_.bent_normal(i, ns[i], guard, wo[i]));
             frame_.guard.set(i, guard);
             frame_.set_shading(i, f);
             lobes_.wo.set(i, f.to_local(wo[i]));
@@ -286,6 +288,7 @@ private:
             if constexpr (kMedia<F>) {
                 if (inside_[i].leaves_body()) return lobes_.push(i, DiffuseLobe{}, Color(1.0f));
                 view.eta = inside_[i].eta();
+                view.finest = kSafety * max_component(p_error_[i]);
                 view.coat = coat_frame<F>(
                     surface_[i], program, shade_in_[i], scene_.textures(), view.front,
                     frame_.shading(i), frame_.shading(i).to_local(frame_.guard[i]), lobes_.wo[i]);
@@ -326,8 +329,7 @@ private:
         });
     }
 
-    // Shadow rays, and the lights as the surfaces' frames see them. Returns the lanes on whose side
-    // of the surface the light is.
+    // Shadow rays; the lights as the frames see them. Returns the lanes on whose side the light is.
     LaneMask aim_at_lights() noexcept {
         LaneFlags faced;
         for (int i = 0; i < kLanes; ++i) {
@@ -338,8 +340,7 @@ private:
             shadow_o_.set(i, o);
             shadow_d_.set(
                 i, {infinite ? wi.x : end.x, infinite ? wi.y : end.y, infinite ? wi.z : end.z});
-            // The end itself is not in the way.
-            shadow_t_max_[i] = infinite ? kInfinity : 0x1.fffffcp-1f;
+            shadow_t_max_[i] = infinite ? kInfinity : 0x1.fffffcp-1f;  // the end is not in the way
             wi_.set(i, local);
             faced.is[i] =
                 same_side(wi, local, frame_.guard[i]) && (F.transmission || local.z > 0.0f);
@@ -355,7 +356,7 @@ private:
                                 light_.p[i], light_.n[i], light_.wi[i]));
     }
 
-    // What the lights give if nothing is in the way. Returns the lanes that it is worth a ray for.
+    // What the lights give if nothing is in the way. Returns the lanes that are worth a ray.
     LaneMask weigh_lights(LaneMask lanes) noexcept {
         LaneFlags lit;
         for (int i = 0; i < kLanes; ++i) {
@@ -415,7 +416,7 @@ private:
             each(alive_, [&](int i) {
                 if (!leaves_body(i))
                     scatter_passes<F>(*passes_, i, lobes_, apart_, scattered_.wi[i],
-                                      bsdf_pdf_[i] == 0.0f);
+                                      scattered_.pdf[i] == 0.0f);
             });
         }
         if constexpr (F.apart) read_reflection_maps();
@@ -435,17 +436,17 @@ private:
         }
     }
 
-    // The next rays. Returns the lanes whose ray leaves on the side that the lobe meant, with
-    // something to carry.
+    // The next rays. Returns the lanes whose ray has something to carry on the side it was meant
+    // for.
     LaneMask leave_surfaces() noexcept {
         LaneFlags leaves;
         for (int i = 0; i < kLanes; ++i) {
-            const Vec3f local = scattered_.wi[i], wi = frame_.shading(i).to_world(local);
-            next_o_.set(i, ray_origin(p_[i], p_error_[i], frame_.ng[i], frame_.lift[i], wi, local));
-            next_d_.set(i, wi);
-            const bool same = same_side(wi, local, frame_.guard[i]);
-            const bool carries = max_component(throughput_[i]) > 0.0f;
-            leaves.is[i] = same & carries;
+            const Leaving to = leave_surface(i, frame_, scattered_);
+            bsdf_pdf_[i] = pick(to.turned, 0.0f, bsdf_pdf_[i]);
+            next_o_.set(i, ray_origin(p_[i], p_error_[i], frame_.ng[i], frame_.lift[i], to.wi,
+                                      scattered_.wi[i]));
+            next_d_.set(i, to.wi);
+            leaves.is[i] = to.leaves & (max_component(throughput_[i]) > 0.0f);
         }
         return leaves.mask();
     }

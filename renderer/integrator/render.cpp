@@ -9,9 +9,12 @@
 
 #include "renderer/core/parallel.h"
 #include "renderer/film/film.h"
+#include "renderer/film/film_file.h"
+#include "renderer/film/mattes.h"
 #include "renderer/integrator/block.h"
-#include "renderer/integrator/mattes.h"
+#include "renderer/integrator/checkpoints.h"
 #include "renderer/integrator/path_passes.h"
+#include "renderer/integrator/resume.h"
 #include "renderer/integrator/tiles.h"
 
 namespace tessera {
@@ -29,27 +32,34 @@ public:
         : scene_(scene),
           settings_(settings),
           window_(window_of(scene.film())),
-          film_(window_, scene.passes(), settings.deep),
+          film_(settings.resume.empty() ? Film(window_, scene.passes(), settings.deep)
+                                        : resumed_film(scene, window_, settings, resumed_s_)),
+          header_(film_header(scene, window_, settings.first_sample)),
           times_(std::any_of(scene.passes().begin(), scene.passes().end(),
                              [](const Pass& p) { return p.source == PassSource::seconds; })),
           filter_(scene.film().filter, scene.film().filter_width_px),
           kernel_(find_kernel(scene.settings().integrator, scene.kernel())),
           tiles_(make_tiles(window_, settings.tile)),
-          workers_(settings.threads) {}
+          workers_(settings.threads),
+          checkpoints_(settings.checkpoint, settings.checkpoint_s, settings.warn) {}
 
     RenderResult run() {
         start_ = Clock::now();
         const int spp = scene_.settings().spp;
-        int done = 0;
+        int done = static_cast<int>(sample_range(film_).least);
+        resumed_ = done;
         // Passes grow fourfold: an early stop leaves an even picture, and the estimate of the end
         // is soon good.
-        for (int pass = 1; done < spp && !stopped_; pass *= 4) {
-            const int count =
-                std::min(settings_.time_s > 0 ? affordable(done, pass) : pass, spp - done);
+        for (int pass = 1, end = 1; done < spp && !stopped_; pass *= 4, end += pass) {
+            if (end <= done) continue;
+            const int count = std::min(
+                settings_.time_s > 0 ? affordable(done - resumed_, end - done) : end - done,
+                spp - done);
             if (count == 0) break;
             render_pass(done, done + count, spp);
             if (!stopped_) done += count;
         }
+        save();
         return finish(done);
     }
 
@@ -58,10 +68,10 @@ private:
         return film.crop ? *film.crop : PixelWindow{0, 0, film.width, film.height};
     }
 
-    // How many more samples the time allows, judged by those taken.
-    int affordable(int done, int wanted) const {
-        if (done == 0) return 1;
-        const double used = seconds_since(start_), each = used / done;
+    // How many more samples the time allows, judged by those taken in this run.
+    int affordable(int taken, int wanted) const {
+        if (taken == 0) return 1;
+        const double used = seconds_since(start_), each = used / taken;
         const double left = settings_.time_s - used;
         return left < 0.5 * each
                    ? 0
@@ -73,19 +83,18 @@ private:
         std::vector<char> done(tiles_.size());
         do {
             render_tiles(first, last, spp, done, finished);
-        } while (give_snapshot(first));
+        } while (save_or_show(first));
     }
 
-    // Those not done yet; leaves some when a snapshot is wanted.
+    // Those not done yet; leaves some when the picture so far is wanted.
     void render_tiles(int first, int last, int spp, std::vector<char>& done,
                       std::atomic<int>& finished) {
+        std::atomic<bool> begun{false};  // so that whoever wants it often does not stop everything
         workers_.for_each(static_cast<int>(tiles_.size()), [&](int t) {
-            if (done[t] || (finished > 0 && snapshot_wanted())) return;
-            if (settings_.cancel && settings_.cancel->load(std::memory_order_relaxed)) {
-                stopped_ = true;
-                return;
-            }
-            render_tile(tiles_[t], first, last);
+            if (done[t] || cancelled() || (begun && interrupted())) return;
+            const bool whole = render_tile(tiles_[t], last);
+            begun = true;
+            if (!whole) return;
             done[t] = 1;
             if (settings_.on_tile) settings_.on_tile(tiles_[t], film_.layers(tiles_[t]));
             const double share =
@@ -94,21 +103,52 @@ private:
         });
     }
 
+    bool cancelled() {
+        if (settings_.cancel && settings_.cancel->load(std::memory_order_relaxed)) stopped_ = true;
+        return stopped_;
+    }
+
     bool snapshot_wanted() const {
         return settings_.snapshot && settings_.snapshot->load(std::memory_order_relaxed);
     }
 
-    // No tile is under way.
-    bool give_snapshot(int done) {
-        if (stopped_ || !snapshot_wanted()) return false;
-        settings_.snapshot->store(false);
-        RenderResult so_far = finish(done);
-        so_far.complete = so_far.stats.complete = false;
-        settings_.on_snapshot(std::move(so_far));
-        return true;
+    bool interrupted() { return cancelled() || snapshot_wanted() || checkpoints_.wanted(); }
+
+    // No block is under way. Whether the render goes on after an interruption.
+    bool save_or_show(int done) {
+        if (stopped_) return false;
+        bool interrupted = false;
+        if (checkpoints_.wanted()) {
+            const Clock::time_point start = Clock::now();
+            checkpoints_.start(film_, header(), workers_);
+            checkpoint_s_ += seconds_since(start);
+            interrupted = true;
+        }
+        if (snapshot_wanted()) {
+            settings_.snapshot->store(false);
+            RenderResult so_far = finish(done);
+            so_far.complete = so_far.stats.complete = false;
+            settings_.on_snapshot(std::move(so_far));
+            interrupted = true;
+        }
+        return interrupted;
     }
 
-    void render_tile(const PixelWindow& tile, int first, int last) {
+    const FilmHeader& header() {
+        const SampleCounts counts = sample_range(film_);
+        header_.least = counts.least, header_.most = counts.most;
+        header_.seconds = resumed_s_ + seconds_since(start_);
+        return header_;
+    }
+
+    void save() {
+        const std::string& file = settings_.film_file;
+        if (settings_.checkpoint != file || file.empty()) checkpoints_.finish(film_, header());
+        if (!file.empty()) write_film_file(file, header(), film_);
+    }
+
+    // False if it was interrupted; the film knows how far each block is.
+    bool render_tile(const PixelWindow& tile, int last) {
         Counters counters;
         BlockJob job;
         job.scene = &scene_;
@@ -117,27 +157,38 @@ private:
         PassSamples passes = film_.pass_samples();
         PathPasses path_passes(scene_, passes);
         if (film_.takes_passes()) job.passes = &path_passes;
-        for (int y = tile.y0 & ~(kBlockSize - 1); y < tile.y1; y += kBlockSize) {
-            for (int x = tile.x0 & ~(kBlockSize - 1); x < tile.x1; x += kBlockSize) {
+        bool whole = true;
+        for (int y = tile.y0 & ~(kBlockSize - 1); whole && y < tile.y1; y += kBlockSize) {
+            for (int x = tile.x0 & ~(kBlockSize - 1); whole && x < tile.x1; x += kBlockSize) {
                 job.x = x, job.y = y;
                 job.lanes = lanes_inside(tile, x, y);
                 seed_block(job, scene_.settings().seed);
-                for (int index = first; index < last; ++index) {
-                    job.index = static_cast<std::uint32_t>(index);
-                    if (job.passes && times_)
-                        timed(job, samples, passes, counters);
-                    else
-                        kernel_(job, samples, counters);
-                    for (int lane = 0; lane < kLanes; ++lane) {
-                        if ((job.lanes >> lane) & 1u)
-                            film_.add(lane_x(job, lane), lane_y(job, lane), job.index,
-                                      samples[lane], job.passes ? &passes : nullptr, lane);
-                    }
-                }
+                whole = render_block(job, last, samples, passes, counters);
             }
         }
         const std::lock_guard lock(mutex_);
         counters_.add(counters);
+        return whole;
+    }
+
+    bool render_block(BlockJob& job, int last, BlockSamples& samples, PassSamples& passes,
+                      Counters& counters) {
+        const int lane = std::countr_zero(job.lanes);  // all have equally many samples
+        for (int n = static_cast<int>(film_.samples(lane_x(job, lane), lane_y(job, lane)));
+             n < last; ++n) {
+            job.index = static_cast<std::uint32_t>(settings_.first_sample + n);
+            if (job.passes && times_)
+                timed(job, samples, passes, counters);
+            else
+                kernel_(job, samples, counters);
+            for (int i = 0; i < kLanes; ++i) {
+                if ((job.lanes >> i) & 1u)
+                    film_.add(lane_x(job, i), lane_y(job, i), job.index, samples[i],
+                              job.passes ? &passes : nullptr, i);
+            }
+            if (interrupted()) return false;
+        }
+        return true;
     }
 
     // Every pixel of a block has an equal part of its time.
@@ -180,11 +231,17 @@ private:
         s.threads = workers_.threads();
         s.tile = settings_.tile;
         s.spp = done;
+        s.first_sample = settings_.first_sample;
+        s.resumed_spp = resumed_;
+        s.resumed_s = resumed_s_;
+        s.checkpoints = checkpoints_.written();
+        s.checkpoints_failed = checkpoints_.failed();
+        s.checkpoint_s = checkpoint_s_;
         s.render_s = seconds_since(start_);
         s.rays = counters_.rays;
         s.samples = counters_.samples;
         s.invalid = counters_.invalid;
-        s.memory_film = film_.bytes();
+        s.memory_film = film_.bytes() + checkpoints_.bytes();
         count_textures(scene_, s);
         s.complete = r.complete;
         if (counters_.first.set) {
@@ -192,7 +249,8 @@ private:
             s.first_invalid = std::string(to_string(f.cause)) + " at pixel " + std::to_string(f.x) +
                               "," + std::to_string(f.y) + " sample " + std::to_string(f.sample);
         }
-        add_mattes(scene_, film_, r.image, s.notes);
+        add_mattes(film_, header_.ids, r.image.layers, s.notes);
+        r.image.metadata = header_.metadata;
         if (const std::size_t crowded = film_.deep() ? film_.deep()->crowded() : 0; crowded > 0)
             s.notes.push_back("deep: " + std::to_string(crowded) + " pixels see more than " +
                               std::to_string(DeepPixels::kMaxDepths) +
@@ -212,7 +270,10 @@ private:
     const Scene& scene_;
     const RenderSettings& settings_;
     PixelWindow window_;
+    double resumed_s_ = 0;  // of the runs before, set with film_
+    int resumed_ = 0;       // samples of those
     Film film_;
+    FilmHeader header_;
     bool times_;  // a pass wants them
     FilterSampler filter_;
     BlockKernel kernel_;
@@ -223,6 +284,8 @@ private:
     std::mutex mutex_;
     Counters counters_;
     double last_report_ = -1;
+    double checkpoint_s_ = 0;
+    Checkpoints checkpoints_;
 };
 
 }  // namespace

@@ -31,16 +31,6 @@ struct FacingFrame {
     Vec3f lift;   // from the point to where reflected rays start
 };
 
-/// Those of a block.
-struct FacingFrames {
-    Vec3Lanes s, t, n;  // the shading frames' axes
-    Vec3Lanes ng, even, guard, lift;
-    LaneFlags front;
-
-    Frame shading(int i) const { return {s[i], t[i], n[i]}; }
-    void set_shading(int i, const Frame& f) { s.set(i, f.s), t.set(i, f.t), n.set(i, f.n); }
-};
-
 inline bool is_lifted(Vec3f lift) { return length2(lift) > 0.0f; }
 
 /// A shading normal that wo cannot see is bent until it can, just; one in which the mirror image
@@ -55,6 +45,29 @@ inline Vec3f consistent_normal(Vec3f ns, Vec3f guard, Vec3f wo) {
     const float lift = least - dot(mirrored, guard);
     return pick(lift > 0.0f, normalize(normalize(mirrored + guard * lift) + wo), n);
 }
+
+/// The same from within glass, where normals bent so would lead what is reflected along the surface
+/// for good: one that will not do is replaced by the surface's own.
+inline Vec3f consistent_normal_within(Vec3f ns, Vec3f guard, Vec3f wo) {
+    constexpr float kGrazing = 1e-3f;
+    const float c = dot(ns, wo), mirrored = 2.0f * c * dot(ns, guard) - dot(wo, guard);
+    return pick((c >= kGrazing) & (mirrored > 0.0f), ns, guard);
+}
+
+/// Those of a block.
+struct FacingFrames {
+    Vec3Lanes s, t, n;  // the shading frames' axes
+    Vec3Lanes ng, even, guard, lift;
+    LaneFlags front;
+    LaneFlags within;  // seen from within a body of glass
+
+    Frame shading(int i) const { return {s[i], t[i], n[i]}; }
+    Vec3f bent_normal(int i, Vec3f ns, Vec3f guarding, Vec3f wo) const {
+        return pick(within.is[i] != 0, consistent_normal_within(ns, guarding, wo),
+                    consistent_normal(ns, guarding, wo));
+    }
+    void set_shading(int i, const Frame& f) { s.set(i, f.s), t.set(i, f.t), n.set(i, f.n); }
+};
 
 /// The shading normal on the viewer's side, maps and bumps applied.
 template <Features F>
@@ -111,8 +124,10 @@ FacingFrame facing_frame(const SurfacePoint& s, const ShaderProgram& program, co
     f.even = f.front ? s.ns : -s.ns;
     f.lift = f.front ? s.lift : Vec3f{};
     f.guard = is_lifted(f.lift) ? f.even : f.ng;
-    const Vec3f n =
-        consistent_normal(facing_normal<F>(s, program, in, textures, f.front), f.guard, wo);
+    const Vec3f facing = facing_normal<F>(s, program, in, textures, f.front);
+    const bool within = !f.front && program.facts().glass;
+    const Vec3f n = within ? consistent_normal_within(facing, f.guard, wo)
+                           : consistent_normal(facing, f.guard, wo);
     f.shading = frame_follows_texture<F>(program) ? frame_in_texture<F>(n, s, program, in, textures)
                                                   : Frame(n);
     f.wo = f.shading.to_local(wo);
@@ -166,6 +181,25 @@ ShadeInput shade_input(const Scene& scene, const ShaderProgram* program, const H
 /// True if the shading frame and the surface agree on which side wi leaves.
 inline bool same_side(Vec3f wi_world, Vec3f wi_local, Vec3f guard) {
     return (dot(wi_world, guard) > 0.0f) == (wi_local.z > 0.0f);
+}
+
+/// wi's mirror image on the surface's other side.
+inline Vec3f reflect_at(Vec3f wi, Vec3f guard) { return wi - guard * (2.0f * dot(wi, guard)); }
+
+/// A lobe's direction as it leaves the surface. What bumpy mirrors and boundaries, and all lobes
+/// within glass, send to the wrong side is turned to the right one, so that it is not lost: as no
+/// light sampling could have found it.
+struct Leaving {
+    Vec3f wi;
+    bool leaves, turned;
+};
+inline Leaving leave_surface(int i, const FacingFrames& frames, const LobeSamples& sent) {
+    const Vec3f local = sent.wi[i], guard = frames.guard[i];
+    const Vec3f meant = frames.shading(i).to_world(local);
+    const bool refracted = sent.cls[i] == static_cast<std::uint32_t>(LobeClass::transmission);
+    const bool turns = (sent.pdf[i] == 0.0f) | refracted | (frames.within.is[i] != 0);
+    const bool same = same_side(meant, local, guard), turned = !same & turns;
+    return {pick(turned, reflect_at(meant, guard), meant), same || turned, turned};
 }
 
 /// Where a ray along wi starts: reflected light at the surface that smooth normals pretend.

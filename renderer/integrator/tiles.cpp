@@ -6,6 +6,11 @@
 namespace tessera {
 namespace {
 
+// Downward also left of and above the frame, where overscan is.
+int tile_of(int pixel, int size) {
+    return pixel >= 0 ? pixel / size : -((size - 1 - pixel) / size);
+}
+
 // Place of cell (x, y) along the Hilbert curve of a 2^order grid.
 std::uint64_t hilbert_index(std::uint32_t x, std::uint32_t y, int order) {
     std::uint64_t d = 0;
@@ -24,8 +29,8 @@ std::uint64_t hilbert_index(std::uint32_t x, std::uint32_t y, int order) {
 }  // namespace
 
 std::vector<PixelWindow> make_tiles(const PixelWindow& window, int size) {
-    const int tx0 = window.x0 / size, ty0 = window.y0 / size;
-    const int tx1 = (window.x1 + size - 1) / size, ty1 = (window.y1 + size - 1) / size;
+    const int tx0 = tile_of(window.x0, size), ty0 = tile_of(window.y0, size);
+    const int tx1 = tile_of(window.x1 - 1, size) + 1, ty1 = tile_of(window.y1 - 1, size) + 1;
     int order = 1;
     while ((1 << order) < std::max(tx1 - tx0, ty1 - ty0)) ++order;
     std::vector<std::pair<std::uint64_t, PixelWindow>> keyed;

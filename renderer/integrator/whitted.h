@@ -129,7 +129,8 @@ private:
             return;
         }
         if (program->facts().emissive)
-            out_[i].radiance += node.weight * program->emission(in, scene_.textures());
+            out_[i].radiance +=
+                node.weight * program->emission(in, scene_.textures(), -dot(v.s.ng, node.ray.d));
         v.frame = facing_frame<F>(v.s, *program, in, scene_.textures(), -node.ray.d);
         lobes_.wo.set(i, v.frame.wo);
         lobes_.even.set(i, v.frame.shading.to_local(v.frame.even));
@@ -212,9 +213,10 @@ private:
     void child(int i, const SmoothSample& s, Color share) noexcept {
         const Vertex& v = vertex_[i];
         const Node& node = node_[i];
-        const Vec3f wi = v.frame.shading.to_world(s.to.wi);
+        Vec3f wi = v.frame.shading.to_world(s.to.wi);
         const Color weight = node.weight * s.weight * share;
-        if (!(max_component(weight) > kFaintest) || !same_side(wi, s.to.wi, v.frame.guard)) return;
+        if (!(max_component(weight) > kFaintest)) return;
+        if (!same_side(wi, s.to.wi, v.frame.guard)) wi = reflect_at(wi, v.frame.guard);
         const bool mirrors =
             s.to.wi.z > 0.0f && (v.frame.front || !scene_.program(v.s.material).facts().glass);
         if (const ReflectionMap* map = mirrors ? scene_.reflection_map(v.s.material) : nullptr) {

@@ -194,7 +194,8 @@ void read_film(const Value& table, SceneReader& reader) {
     entry.resolution = {film.width, film.height};
     read_keys(table, film_rows(), entry, at);
     film = entry.film;
-    film.loc = table.loc;
+    film.loc = film.aovs_loc = table.loc;
+    if (const Value* aovs = table.find("aovs")) film.aovs_loc = aovs->loc;
     film.width = entry.resolution[0];
     film.height = entry.resolution[1];
     const std::string size = std::to_string(film.width) + " x " + std::to_string(film.height);

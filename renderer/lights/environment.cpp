@@ -31,6 +31,23 @@ struct CornerLanes {
     LatLongMap::Corners get(int i) const { return {i00[i], i01[i], i10[i], i11[i], tx[i], ty[i]}; }
 };
 
+// Karlik et al., "MIS Compensation: Optimizing Sampling Techniques in Multiple Importance
+// Sampling", SIGGRAPH Asia 2019: the table's density less its mean. A map that is the same all over
+// keeps what it has.
+void compensate(std::vector<double>& weights, int width, double mean) {
+    const auto rows = weights.size() / static_cast<std::size_t>(width);
+    std::vector<double> above(weights.size());
+    bool any = false;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        const auto y = static_cast<double>(i / static_cast<std::size_t>(width));
+        const double sine =
+            std::sin((y + 0.5) / static_cast<double>(rows) * 3.14159265358979323846);
+        above[i] = std::max(weights[i] - mean * sine, 0.0);
+        any |= above[i] > 1e-3 * mean * sine;
+    }
+    if (any) weights = std::move(above);
+}
+
 }  // namespace
 
 LatLongMap make_latlong_map(int width, int height, std::vector<Color> texels, Color scale,
@@ -164,7 +181,7 @@ EnvironmentLight make_environment(int width, int height, std::vector<Color> texe
                             camera_visible);
 }
 
-EnvironmentLight make_environment(LatLongMap map, bool camera_visible) {
+EnvironmentLight make_environment(LatLongMap map, bool camera_visible, EnvironmentTable table) {
     EnvironmentLight e;
     e.camera_visible = camera_visible;
     e.map = std::move(map);
@@ -173,6 +190,7 @@ EnvironmentLight make_environment(LatLongMap map, bool camera_visible) {
     // The mean over a texel of the bilinear look-up: weights 1/8, 6/8, 1/8 each way, times the
     // texel's solid angle.
     std::vector<double> weights(std::size_t(width) * height);
+    double all = 0, area = 0;
     const auto at = [&](int x, int y) {
         return luminance_of(
             e.map.texels[std::size_t(std::clamp(y, 0, height - 1)) * width + (x + width) % width]);
@@ -186,8 +204,11 @@ EnvironmentLight make_environment(LatLongMap map, bool camera_visible) {
                     sum += at(x + dx, y + dy) * (dx ? 0.125 : 0.75) * (dy ? 0.125 : 0.75);
             }
             weights[std::size_t(y) * width + x] = sum * sine;
+            all += sum * sine, area += sine;
         }
     }
+    e.mean = all / static_cast<double>(weights.size());
+    if (table == EnvironmentTable::compensated) compensate(weights, width, all / area);
     e.table = Distribution2D(width, height, weights);
     return e;
 }

@@ -85,6 +85,7 @@ bool sample(const QuadLight& l, const LightReference& ref, Vec2f u, LightSample&
 bool sample(const DiscLight& l, const LightReference& ref, Vec2f u, LightSample& s) {
     s.p_error = (abs(l.center) + Vec3f(l.radius)) * gamma_bound(8);
     s.radiance = l.radiance;
+    s.material = l.material;
     if (!l.two_sided && dot(ref.p - l.center, l.normal) <= 0.0f) return false;
     const Vec2f d = warp_disc_concentric(u);
     const Vec3f p = l.center + Frame(l.normal).to_world({d.x * l.radius, d.y * l.radius, 0});
@@ -101,6 +102,7 @@ float cone_of(const SphereLight& l, Vec3f p) {
 bool sample(const SphereLight& l, const LightReference& ref, Vec2f u, LightSample& s) {
     s.p_error = (abs(l.center) + Vec3f(l.radius)) * gamma_bound(16);
     s.radiance = l.radiance;
+    s.material = l.material;
     const float one_minus_cos = cone_of(l, ref.p);
     if (one_minus_cos == 0.0f) {  // inside, or nearly touching: by area
         const Vec3f n = warp_sphere(u);

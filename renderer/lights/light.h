@@ -91,12 +91,14 @@ struct DiscLight {
     float radius = 1;
     Color radiance;
     bool two_sided = false;
+    std::int32_t material = -1;  // as in LightSample
 };
 
 struct SphereLight {
     Vec3f center;
     float radius = 1;
     Color radiance;
+    std::int32_t material = -1;
 };
 
 /// The emissive faces of a mesh in its own space; its instances share them.
@@ -127,7 +129,8 @@ struct MeshLight {
 /// `reflection` is set, camera rays or the rays of specular lobes see that one in its place.
 struct EnvironmentLight {
     LatLongMap map;
-    Distribution2D table;
+    Distribution2D table;  // of the light above its mean, see make_environment
+    double mean = 0;       // luminance per texel times its sine, before scale
     bool camera_visible = true;
     std::shared_ptr<const LatLongMap> camera, reflection;
 
@@ -169,8 +172,12 @@ QuadLight make_quad_light(Vec3d corner, Vec3d edge_u, Vec3d edge_v, Color radian
 /// A sun: to_light is a unit vector, irradiance that of a surface facing it, angle_deg its breadth.
 DistantLight make_distant_light(Vec3f to_light, Color irradiance, double angle_deg,
                                 bool camera_visible);
+enum class EnvironmentTable : std::uint8_t { compensated, plain };
 EnvironmentLight make_constant_environment(Color radiance, bool camera_visible);
-EnvironmentLight make_environment(LatLongMap map, bool camera_visible);
+/// A compensated table leaves out what lies below the mean: those directions are for whoever asks
+/// to find by the surface's own sampling, weighed with the table's by multiple importance sampling.
+EnvironmentLight make_environment(LatLongMap map, bool camera_visible,
+                                  EnvironmentTable table = EnvironmentTable::compensated);
 /// texels: width x height RGB from the top. Sanitised by the caller.
 EnvironmentLight make_environment(int width, int height, std::vector<Color> texels, Color scale,
                                   double rotate_deg, bool camera_visible);

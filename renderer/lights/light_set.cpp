@@ -6,6 +6,7 @@
 #include <set>
 
 #include "renderer/core/warp.h"
+#include "renderer/lights/mesh_lights.h"
 
 namespace tessera {
 namespace {
@@ -114,6 +115,15 @@ LaneMask LightSet::sample(LaneMask lanes, const LightReference (&refs)[kLanes],
             const int first = std::countr_zero(rest);
             const Light& light = lights_[picks[first].index];
             LaneMask same = 1u << first;
+            if (std::holds_alternative<MeshLight>(light)) {
+                const Light* chosen[kLanes];
+                for (LaneMask m = rest; m != 0; m &= m - 1) {
+                    const int i = std::countr_zero(m);
+                    chosen[i] = &lights_[picks[i].index];
+                }
+                made |= sample_mesh_lights(rest, chosen, refs, u, out);
+                break;
+            }
             const auto* sky = std::get_if<EnvironmentLight>(&light);
             const auto* sun = std::get_if<DistantLight>(&light);
             if (sky || sun) {
@@ -233,7 +243,7 @@ double light_power(const Light& light, double scene_radius, double mesh_emission
             // A constant sky is found best by the rays that surfaces send anyway.
             if (l.map.width == 0) return 0;
             // The table's weights carry the sine; their mean over the sphere is mean * pi / 2.
-            const double radiance = l.table.mean() * kPiD / 2 * mean_of(l.map.scale);
+            const double radiance = l.mean * kPiD / 2 * mean_of(l.map.scale);
             return kPiD * disc * radiance;
         }
     };

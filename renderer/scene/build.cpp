@@ -150,12 +150,13 @@ private:
         for (const LightDesc& light : desc_.lights) tags.add(light.light_group, light.name);
         if (desc_.environment) tags.add(desc_.environment->light_group, "environment");
         if (desc_.sky) tags.add(desc_.sky->light_group, "sky");
-        scene_->passes_ = tessera::choose_passes(desc_.film.aovs, tags.groups(), desc_.film.loc);
+        const SourceLoc& loc = desc_.film.aovs_loc;
+        scene_->passes_ = tessera::choose_passes(desc_.film.aovs, tags.groups(), loc);
         if (needs_path(scene_->passes_) && desc_.render.integrator != Integrator::path)
-            throw Error(ExitCode::usage, desc_.film.loc,
+            throw Error(ExitCode::usage, loc,
                         "film.aovs: passes of light, shadow and lobes need render.integrator = "
                         "'path'");
-        scene_->light_paths_ = LightPaths(scene_->passes_, tags.tags(), desc_.film.loc);
+        scene_->light_paths_ = LightPaths(scene_->passes_, tags.tags(), loc);
     }
 
     // By the camera that frames what is there before: what it frames in the end is not known yet.

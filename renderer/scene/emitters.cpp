@@ -145,13 +145,14 @@ struct EmitterBuilder {
             return;
         }
         const Color radiance = program.mean_emission(in.textures);
+        const std::int32_t asked = facts.emission_covered ? material : -1;
         placed.light = next();
         if (placed.kind == PlacedKind::sphere) {
             const Sphere& s = geometry.spheres[placed.shape];
-            add(SphereLight{s.center, s.radius, radiance}, surface(material));
+            add(SphereLight{s.center, s.radius, radiance, asked}, surface(material));
         } else {
             const Disc& d = geometry.discs[placed.shape];
-            add(DiscLight{d.center, d.normal, d.radius, radiance, true}, surface(material));
+            add(DiscLight{d.center, d.normal, d.radius, radiance, true, asked}, surface(material));
         }
     }
 

@@ -1,10 +1,12 @@
 #include "renderer/scene/hash.h"
 
 #include "renderer/api/openpbr_inputs.h"
+#include "renderer/scene/file_hash.h"
 
 #include <xxhash.h>
 
 #include <cstdio>
+#include <map>
 #include <type_traits>
 
 namespace tessera {
@@ -55,9 +57,17 @@ public:
         all(n.type, n.inputs, n.texture, n.color);
         for (const bool given : n.given) (*this)(given);
     }
-    void operator()(const TextureTile& t) { all(t.column, t.row, t.file); }
+    // What lies in it, not where it lies: the same scene in another folder is the same.
+    void file(const std::string& path) {
+        if (path.empty()) return (*this)(path);
+        const auto [known, added] = files_.try_emplace(path, 0);
+        if (added) known->second = file_hash(path);
+        (*this)(known->second);
+    }
+    void operator()(const TextureTile& t) { all(t.column, t.row), file(t.file); }
     void operator()(const TextureDesc& t) {
-        all(t.file, t.tiles, t.color_space, t.wrap_u, t.wrap_v, t.filter, t.scale, t.offset, t.gain,
+        if (t.tiles.empty()) file(t.file);
+        all(t.tiles, t.color_space, t.wrap_u, t.wrap_v, t.filter, t.scale, t.offset, t.gain,
             t.bias);
     }
     void operator()(const MaterialDesc& m) {
@@ -69,8 +79,8 @@ public:
             m.use_vertex_color, m.reflection_map);
     }
     void operator()(const ReflectionMapDesc& r) {
-        all(r.file, r.projection, r.color_space, r.scale, r.rotate_deg, r.position, r.radius,
-            r.box);
+        file(r.file);
+        all(r.projection, r.color_space, r.scale, r.rotate_deg, r.position, r.radius, r.box);
     }
     void operator()(const MeshDesc& m) {
         all(m.positions, m.normals, m.uvs, m.colors, m.triangles, m.quads, m.position_index,
@@ -98,8 +108,9 @@ public:
         std::visit([&](const auto& s) { (*this)(s); }, l.shape);
     }
     void operator()(const EnvironmentDesc& e) {
-        all(e.file, e.faces, e.camera, e.lighting, e.reflection, e.projection, e.color_space,
-            e.radiance, e.rotate_deg, e.visible, e.light_group);
+        for (const std::string* f : {&e.file, &e.camera, &e.lighting, &e.reflection}) file(*f);
+        for (const std::string& face : e.faces) file(face);
+        all(e.projection, e.color_space, e.radiance, e.rotate_deg, e.visible, e.light_group);
     }
     void operator()(const SkyDesc::PlaceAndTime& t) {
         all(t.latitude_deg, t.longitude_deg, t.year, t.month, t.day, t.hour);
@@ -130,6 +141,7 @@ public:
 private:
     void bytes(const void* data, std::size_t n) { XXH3_64bits_update(state_, data, n); }
     XXH3_state_t* state_;
+    std::map<std::string, std::uint64_t> files_;
 };
 
 }  // namespace

@@ -7,8 +7,8 @@
 
 namespace tessera {
 
-/// 16 hex digits over geometry, materials, lights, camera, film and settings that change pixels
-/// (not spp or crop).
+/// 16 hex digits over geometry, materials, lights, camera, film, what is in the images, and
+/// settings that change pixels (not spp or crop).
 std::string scene_hash(const SceneDesc& desc);
 
 }  // namespace tessera

@@ -48,7 +48,7 @@ inline Color emitter_radiance(const Scene& scene, std::int32_t material, std::ui
         place_input(scene, s, in);
         look_along(d, s, in);
     }
-    return program.visible_emission(in, scene.textures());
+    return program.visible_emission(in, scene.textures(), -dot(n, d));
 }
 
 }  // namespace tessera

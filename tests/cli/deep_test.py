@@ -90,6 +90,7 @@ class Deep(TesseraTest):
         self.expect(USAGE, "render", "scene.toml", "-o", "a.exr", "--deep", "a.exr")
         self.expect(USAGE, "render", "scene.toml", "-o", "a.exr", "--deep", "a.png")
         self.expect(OUTPUT, "render", "scene.toml", "-o", "a.exr", "--deep", "nowhere/a.exr")
+        self.expect(USAGE, "render", "scene.toml", "-o", "a.exr", "--deep", "d.exr", "--checkpoint", "c.film")
         self.render("--deep", "deep.exr")
         self.expect(USAGE, "flatten", "deep.exr")
         self.expect(USAGE, "flatten", "-o", "flat.exr")

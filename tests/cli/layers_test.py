@@ -51,7 +51,7 @@ class Layers(TesseraTest):
             ("renderer/geometry/a.h", "renderer/image/texture.h"),
             ("renderer/lights/a.h", "renderer/geometry/mesh.h"),
             ("renderer/film/a.h", "renderer/image/texture.h"),
-            ("renderer/scene/a.h", "renderer/film/film.h"),
+            ("renderer/lights/a.h", "renderer/film/film.h"),
             ("renderer/scene/a.h", "renderer/integrator/path.h"),
             ("renderer/io/a.cpp", "renderer/scene/scene.h"),
             ("renderer/integrator/a.h", "renderer/io/obj.h"),

@@ -154,6 +154,21 @@ void check_crops(const SceneDesc& scene) {
 
 }  // namespace
 
+TEST_CASE("equal bits: passes, for any kernel, threads, tiles and crop") {
+    const TempFolder folder;
+    SceneDesc s = glass_scene(folder);
+    s.lights[0].light_group = "key";
+    s.film.aovs = {"compositing", "lookdev",   "light_groups", "diffuse@groups",
+                   "cryptomatte", "object_id", "variance",     "own = C<RD>+[LOB]"};
+    check_schedules(s);
+    check_crops(s);
+    SceneDesc plain = matte_scene();
+    plain.film.aovs = s.film.aovs;
+    const auto basic = by_kernel(plain, "basic");
+    CHECK(by_kernel(plain, "surface") == basic);
+    CHECK(by_kernel(plain, "full") == basic);
+}
+
 TEST_CASE("equal bits: every kernel that covers a scene gives the same picture") {
     const TempFolder folder;
     const auto basic = by_kernel(matte_scene(), "basic");

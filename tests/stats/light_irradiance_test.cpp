@@ -143,7 +143,8 @@ TEST_CASE("environment: irradiance is the integral of its look-ups") {
     Random n(5);
     for (int i = 0; i < kW * kH; ++i) texels.push_back(Color(n.between(0.0f, 2.0f)));
     texels[2 * kW + 5] = Color(300.0f);
-    const EnvironmentLight sky = make_environment(kW, kH, texels, Color(0.5f), 70, true);
+    const EnvironmentLight sky = make_environment(make_latlong_map(kW, kH, texels, Color(0.5f), 70),
+                                                  true, EnvironmentTable::plain);
     for (const Vec3d normal : {Vec3d{0, 1, 0}, normalize(Vec3d{1, 0.2, -1}), Vec3d{0, -1, 0}}) {
         double expected = 0;
         constexpr int kSteps = 1024;

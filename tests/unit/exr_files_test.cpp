@@ -161,6 +161,37 @@ TEST_CASE("exr files: a split picture is a file per layer, ranks of a matte toge
     CHECK(read_raw_exr(folder / "a.N.exr").parts[0].text("tessera/channels") == "X,Y,Z");
 }
 
+TEST_CASE("exr files: of a split picture only the mattes' file has their header") {
+    const TempFolder folder;
+    LayeredImage image = make_picture();
+    for (const char* type : {"CryptoObject", "CryptoAsset"}) {
+        const std::string prefix = std::string("cryptomatte/") + type[6] + "/";
+        image.metadata.emplace_back(prefix + "name", type);
+        image.metadata.emplace_back(prefix + "manifest", "{}");
+    }
+    write_exr(image, folder / "a.exr", in(ExrLayout::split));
+    const RawExr beauty = read_raw_exr(folder / "a.exr");
+    const RawExr matte = read_raw_exr(folder / "a.CryptoObject.exr");
+    CHECK(beauty.parts[0].text("cryptomatte/O/name").empty());
+    CHECK(beauty.parts[0].text("cryptomatte/O/manifest").empty());
+    CHECK(matte.parts[0].text("cryptomatte/O/name") == "CryptoObject");
+    CHECK(matte.parts[0].text("cryptomatte/O/manifest") == "{}");
+    CHECK(matte.parts[0].text("cryptomatte/A/name").empty());
+    // Parts share the first one's header.
+    write_exr(image, folder / "b.exr", in(ExrLayout::multipart));
+    CHECK(read_raw_exr(folder / "b.exr").parts[0].text("cryptomatte/O/name") == "CryptoObject");
+}
+
+TEST_CASE("exr files: a lone channel is luminance in a file of its own") {
+    const TempFolder folder;
+    LayeredImage image = make_picture(false);
+    image.layers.push_back(make_layer("ao", {"A"}, LayerKind::data));
+    write_exr(image, folder / "a.exr", in(ExrLayout::split));
+    const RawExr ao = read_raw_exr(folder / "a.ao.exr");
+    CHECK(names(ao.parts[0]) == "Y");
+    CHECK(ao.parts[0].text("tessera/channels") == "A");
+}
+
 TEST_CASE("exr files: <aov> in the name stands for the pass, of split pictures only") {
     const TempFolder folder;
     const LayeredImage image = make_picture(false);

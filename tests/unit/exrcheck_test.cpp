@@ -11,7 +11,7 @@
 #include <set>
 
 #include "renderer/api/image.h"
-#include "renderer/core/murmur.h"
+#include "renderer/core/murmur3.h"
 #include "tests/support/exr_bytes.h"
 #include "tests/support/temp_folder.h"
 
@@ -64,7 +64,7 @@ ExrBytes with_matte() {
     ExrBytes file = clean();
     add(file, "CryptoObject00", "RGBA", 0, kFloat);
     file.channel("CryptoObject00.R").value =
-        constant(std::bit_cast<float>(cryptomatte_bits("torus")));
+        constant(std::bit_cast<float>(cryptomatte_id("torus")));
     file.channel("CryptoObject00.G").value = constant(0.5f);
     const std::string key = "cryptomatte/3ae39a5/";
     file.attribute(key + "name", "CryptoObject");
@@ -224,6 +224,14 @@ TEST_CASE("exrcheck: each fault is found, and nothing else") {
         wanted.insert(id);
         CHECK(rules_of(check(file.bytes())) == wanted);
     }
+}
+
+TEST_CASE("exrcheck: a lone channel A is no alpha") {
+    ExrBytes file = clean();
+    add(file, "sample_count", "A", 64, kFloat);
+    CHECK(rules_of(check(file.bytes())).empty());
+    add(file, "glow", "RGBA", 1.1f);
+    CHECK(rules_of(check(file.bytes())) == std::set<std::string>{"alpha-range"});
 }
 
 TEST_CASE("exrcheck: every rule has a test") {

@@ -1,4 +1,4 @@
-#include "renderer/integrator/mattes.h"
+#include "renderer/film/mattes.h"
 
 #include <doctest/doctest.h>
 

@@ -164,7 +164,7 @@ TEST_CASE("mtlx surface: values out of range, or of a wrong type are refused") {
         return folder.refusal(mtlx_surface(one, beside));
     };
     CHECK(refusal(input("specular_ior", "float", "value='0'")) ==
-          "a.mtlx:4:1: open_pbr_surface 's': specular_ior is 0, must be from 0.1 to 10");
+          "a.mtlx:4:1: open_pbr_surface 's': specular_ior is 0, must be from 0.01 to 100");
     CHECK(refusal(input("specular_ior", "float", "value='1e400'")) ==
           "a.mtlx:4:1: input 'specular_ior': value is '1e400', must be of type float");
     CHECK(refusal(input("base_color", "float", "value='1'")) ==

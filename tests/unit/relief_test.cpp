@@ -109,8 +109,8 @@ TEST_CASE("relief: layers drive bump, opacity, emission, normal and tangent by o
     CHECK(program.opacity(out, nullptr) == 1.0f);
     CHECK(program.opacity(in, nullptr) == 0.0f);
     CHECK(program.facts().opacity_geometry);
-    CHECK(near(program.emission(out, nullptr), Color(0.0f)));
-    CHECK(near(program.emission(in, nullptr), {1, 0.5f, 0}));
+    CHECK(near(program.emission(out, nullptr, 1), Color(0.0f)));
+    CHECK(near(program.emission(in, nullptr, 1), {1, 0.5f, 0}));
     CHECK(max_component(program.mean_emission(nullptr)) > 0.0f);
     CHECK(near(program.normal(out, nullptr), {0, 0, 1}));
     CHECK(near(program.normal(in, nullptr), normalize(Vec3f{0, -0.5f, 1}), 1e-3f));

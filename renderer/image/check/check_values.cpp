@@ -50,8 +50,11 @@ ValueCheck::ValueCheck(const RawExr& file) : file_(file) {
             layers.insert(layer);
             if (is_cryptomatte_pass(name)) continue;
             const bool data = is_data_pass(name);
-            ChannelState state{p,     c, is_colour_token(token) && !data, token == "A" && !data,
-                               false, {}};
+            // A lone A is some value of its own: many renderers end one-channel layers so.
+            const bool coverage =
+                token == "A" && !data &&
+                (find_channels(file, layer, "RA") || find_channels(file, layer, "YA"));
+            ChannelState state{p, c, is_colour_token(token) && !data, coverage, false, {}};
             state.depth =
                 token == "Z" && (name == "depth" || name == "Z" || name == "depth_filtered");
             channels_.push_back(state);

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "renderer/core/murmur.h"
+#include "renderer/core/murmur3.h"
 
 namespace tessera {
 namespace {
@@ -53,10 +53,10 @@ void read_manifest(const std::string& text, const std::string& where, MatteHeade
         if (!value.is_string() || !parse_id(value.get_ref<const std::string&>(), id))
             return bad("the id of '" + name + "' is not 8 hex digits");
         header.ids.insert(id);
-        if (id == cryptomatte_bits(name)) continue;
+        if (id == cryptomatte_id(name)) continue;
         if (wrong++ == 0)
-            first = fmt::format("'{}' has {:08x}, its hash is {:08x}", name, id,
-                                cryptomatte_bits(name));
+            first =
+                fmt::format("'{}' has {:08x}, its hash is {:08x}", name, id, cryptomatte_id(name));
     }
     header.named = true;
     if (wrong > 0)

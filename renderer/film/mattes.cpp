@@ -1,4 +1,4 @@
-#include "renderer/integrator/mattes.h"
+#include "renderer/film/mattes.h"
 
 #include <fmt/format.h>
 
@@ -8,11 +8,6 @@
 
 namespace tessera {
 namespace {
-
-NameKind kind_of(PassSource source) {
-    if (source == PassSource::crypto_object) return NameKind::object;
-    return source == PassSource::crypto_material ? NameKind::material : NameKind::asset;
-}
 
 void tell_loss(const Pass& pass, const IdCoverage& coverage, std::vector<std::string>& notes) {
     const CryptomatteLoss loss = cryptomatte_loss(coverage);
@@ -30,18 +25,15 @@ void tell_loss(const Pass& pass, const IdCoverage& coverage, std::vector<std::st
 
 }  // namespace
 
-void add_mattes(const Scene& scene, Film& film, LayeredImage& image,
-                std::vector<std::string>& notes) {
+void add_mattes(Film& film, std::span<const std::vector<std::uint32_t>> ids,
+                std::vector<Layer>& layers, std::vector<std::string>& notes) {
     for (std::size_t p = 0; p < film.passes().size(); ++p) {
         const IdCoverage* coverage = film.coverage(p);
         if (!coverage) continue;
-        const Pass& pass = film.passes()[p];
-        const NameList& list = scene.name_ids()->list(kind_of(pass.source));
-        auto layers = cryptomatte_layers(pass.name, *coverage, list.ids, film.sample_counts());
-        std::move(layers.begin(), layers.end(), std::back_inserter(image.layers));
-        auto header = cryptomatte_header(pass.name, list.names);
-        std::move(header.begin(), header.end(), std::back_inserter(image.metadata));
-        tell_loss(pass, *coverage, notes);
+        const std::string& name = film.passes()[p].name;
+        auto added = cryptomatte_layers(name, *coverage, ids[p], film.sample_counts());
+        std::move(added.begin(), added.end(), std::back_inserter(layers));
+        tell_loss(film.passes()[p], *coverage, notes);
     }
 }
 

@@ -1,0 +1,66 @@
+#pragma once
+// A film saved while its render goes on: copied with the workers at rest, written by a thread.
+
+#include <atomic>
+#include <condition_variable>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "renderer/core/parallel.h"
+#include "renderer/film/film.h"
+#include "renderer/film/film_header.h"
+
+namespace tessera {
+
+class Checkpoints {
+public:
+    /// What cannot be written is told to warn, from any thread; the last good file stays. Without a
+    /// path nothing is ever wanted.
+    Checkpoints(std::string path, double every_s, std::function<void(const std::string&)> warn);
+    /// Waits for the one under way.
+    ~Checkpoints();
+    Checkpoints(const Checkpoints&) = delete;
+    Checkpoints& operator=(const Checkpoints&) = delete;
+
+    /// Time for one; the one before is on the disk.
+    bool wanted() const noexcept { return wanted_.load(std::memory_order_relaxed); }
+    /// Copies the film and clears wanted(). Without memory for a copy it writes at once.
+    void start(Film& film, FilmHeader header, Workers& workers);
+    /// The last one, in this thread. Nothing is wanted afterwards.
+    void finish(Film& film, const FilmHeader& header);
+
+    int written() const noexcept { return written_; }
+    int failed() const noexcept { return failed_; }
+    /// Of the copy.
+    std::size_t bytes() const noexcept { return bytes_; }
+
+private:
+    void run();
+    void stop();
+    bool copy(Film& film, Workers& workers);
+    void write(const std::function<void()>& write_file);
+
+    std::string path_;
+    double every_s_;
+    std::function<void(const std::string&)> warn_;
+    std::atomic<bool> wanted_{false};
+    std::atomic<int> written_{0}, failed_{0};
+    std::string last_failure_;
+    // A copy of the film's arrays, kept from one to the next.
+    std::vector<std::unique_ptr<std::byte[]>> memory_;
+    std::vector<Film::Array> copies_;
+    std::vector<IdCoverageState> coverage_;
+    std::size_t bytes_ = 0;
+    FilmHeader header_;
+    std::mutex mutex_;
+    std::condition_variable wake_;
+    bool given_ = false, copied_ = false, stop_ = false;
+    std::thread thread_;
+};
+
+}  // namespace tessera
