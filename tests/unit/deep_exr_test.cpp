@@ -159,6 +159,18 @@ TEST_CASE("deep exr: rounding to halves does not add up, however many samples th
     }
 }
 
+TEST_CASE("deep exr: what rounding takes from a sample the next one has") {
+    // Each would be rounded down to 1; together they are 20.008.
+    const float light = 1.0004f;
+    const std::vector<DeepSample> shares(20, {2, {light, light, light}, 0});
+    DeepLine line;
+    WriteReport report;
+    append_over(shares, true, line, report);
+    double sum = 0;
+    for (const DeepValue& v : line.values) sum += static_cast<double>(v.rgba[0]);
+    CHECK(sum == doctest::Approx(20 * 1.0004).epsilon(0x1p-11 / 20));  // the last one's rounding
+}
+
 TEST_CASE("deep exr: a window of the image, or one beyond it, has the same pixels") {
     const TempFolder folder;
     const DeepImage image = make_image();
