@@ -23,7 +23,7 @@ struct DeepPixelsState {
 /// Samples are summed up in steps of depth that are the same for all pixels: a 2048th of a power of
 /// two. A pixel that sees more than kMaxDepths of them has its steps doubled until they are few
 /// enough. How often is told by the set of depths alone, so that the same samples give the same
-/// picture however they were split and merged (docs/decisions/010-deep-by-steps-of-depth.md).
+/// picture however they were split and merged (docs/decisions/011-deep-by-steps-of-depth.md).
 /// One thread at a time per pixel; no locks.
 class DeepPixels {
 public:
