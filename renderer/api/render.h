@@ -6,9 +6,11 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "renderer/api/deep.h"
 #include "renderer/api/image.h"
 #include "renderer/api/scene_desc.h"
 
@@ -110,6 +112,7 @@ struct Progress {
 
 struct RenderResult {
     LayeredImage image;
+    std::optional<DeepImage> deep;  // where the settings ask for it
     Statistics stats;
     bool complete = true;  // false: not finished; the picture holds what there was
 };
@@ -118,6 +121,7 @@ struct RenderSettings {
     int threads = 0;    // 0: what affinity, cgroup and Slurm allow; negative: all but that many
     int tile = 32;      // pixels, a multiple of 4
     double time_s = 0;  // > 0: passes until so many seconds are used; spp is then the upper bound
+    bool deep = false;  // also beauty apart by depth
     const std::atomic<bool>* cancel = nullptr;
     std::function<void(const Progress&)> progress;  // called from one thread at a time
     /// A tile of a pass is finished: its pixels so far, to be copied. Called by several at a time.

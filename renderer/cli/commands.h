@@ -23,6 +23,7 @@ void add_info(CLI::App& app, CommandLine& line);
 void add_bench(CLI::App& app, CommandLine& line);
 void add_version(CLI::App& app, CommandLine& line);
 void add_exrcheck(CLI::App& app, CommandLine& line);
+void add_flatten(CLI::App& app, CommandLine& line);
 void add_schema(CLI::App& app, CommandLine& line);
 
 }  // namespace tessera

@@ -62,10 +62,12 @@ int report(const tessera::Error& e) {
 }
 
 tessera::Error unknown_command(const std::string& word) {
-    const std::vector<std::string> known{"render", "merge", "info", "bench", "exrcheck", "version"};
+    const std::vector<std::string> known{"render", "merge",    "flatten", "info",
+                                         "bench",  "exrcheck", "version"};
     return {tessera::ExitCode::usage,
             "tessera: unknown command '" + word + "'" + tessera::did_you_mean(word, known) +
-                "; there are render, merge, info, bench, exrcheck and version (tessera --help)"};
+                "; there are render, merge, flatten, info, bench, exrcheck and version (tessera "
+                "--help)"};
 }
 
 }  // namespace
@@ -96,6 +98,7 @@ int main(int argc, char** argv) {
     tessera::add_info(app, line);
     tessera::add_bench(app, line);
     tessera::add_exrcheck(app, line);
+    tessera::add_flatten(app, line);
     tessera::add_version(app, line);
     tessera::add_schema(app, line);
 

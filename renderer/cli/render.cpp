@@ -35,7 +35,7 @@ struct RenderOptions {
     SceneOptions scene;
     LongRenderOptions runs;
     OutputOptions out;
-    std::string output, preview, view, stats, display;
+    std::string output, preview, view, stats, display, deep;
     std::string progress = "auto", crypto_manifest = "embedded";
     double time_s = 0;
     bool no_progress = false, quiet = false;
@@ -61,6 +61,7 @@ void write_stats(const Statistics& s, const std::string& path) {
 std::vector<OutputFile> outputs_of(const RenderOptions& o) {
     std::vector<OutputFile> files{{o.output, "--output", {".exr", kFilmExtension}},
                                   {o.preview, "--preview", {".png", ".jpg", ".jpeg"}},
+                                  {o.deep, "--deep", {".exr"}},
                                   {o.stats == "-" ? "" : o.stats, "--stats", {}}};
     for (const OutputFile& f : o.runs.outputs(o.output)) files.push_back(f);
     return files;
@@ -144,6 +145,7 @@ RenderResult render_with_progress(const Scene& scene, const RenderOptions& o,
     settings.threads = o.scene.threads;
     settings.tile = o.scene.tile;
     settings.time_s = o.time_s;
+    settings.deep = !o.deep.empty();
     settings.cancel = &stop_at_next_tile();
     settings.progress = [&](const Progress& p) { printer.show(p); };
     settings.snapshot = &snapshot_wanted();
@@ -163,6 +165,27 @@ RenderResult render_with_progress(const Scene& scene, const RenderOptions& o,
     printer.finish();
     if (display) display->show(result.image.window, result.image.layers);
     return result;
+}
+
+// Depths are not in film files.
+void check_deep(const RenderOptions& o) {
+    const bool film = std::filesystem::path(o.output).extension() == kFilmExtension;
+    if (o.deep.empty() || (!film && o.runs.checkpoint.empty() && o.runs.resume.empty())) return;
+    throw Error(ExitCode::usage,
+                "--deep: film files hold no depths; not with --checkpoint, --resume or an output "
+                "that is a film file");
+}
+
+// What the header says of the picture; names of mattes are left to the file that has them.
+void write_deep(RenderResult& r, const std::string& path, const WriteOptions& options,
+                WriteReport& report) {
+    for (const auto& entry : r.image.metadata)
+        if (!entry.first.starts_with("cryptomatte/")) r.deep->metadata.push_back(entry);
+    const WriteReport deep = write_deep_exr(*r.deep, r.image.window, path, options);
+    report.bytes += deep.bytes;
+    report.clamped += deep.clamped;
+    report.non_finite += deep.non_finite;
+    report.files.push_back(path);
 }
 
 // Hours of rendering are not lost with a full disk.
@@ -186,6 +209,7 @@ int run_render(RenderOptions options, const std::string& command) {
     }
     catch_signals();
     if (!options.display.empty()) parse_viewer_address(options.display);
+    check_deep(options);
     if (options.progress == "tractor" && options.stats == "-")
         throw Error(ExitCode::usage,
                     "--progress tractor: standard output is that of --stats -; give it a file");
@@ -213,7 +237,10 @@ int run_render(RenderOptions options, const std::string& command) {
     const auto display = open_display(scene->film(), options, printer);
     const auto write = [&](RenderResult& r) {
         describe_picture(r.image, scene->hash(), r.stats, command, files.format);
-        return write_picture_files(r.image, files);
+        WriteReport report = write_picture_files(r.image, files);
+        if (r.deep)
+            write_deep(r, options.deep, write_options(files.format, options.scene.threads), report);
+        return report;
     };
     RenderResult result = render_with_progress(*scene, options, write, printer, display.get());
     Statistics& s = result.stats;
@@ -269,6 +296,9 @@ void add_render(CLI::App& app, CommandLine& line) {
     o->runs.add_to(*sub);
     sub->add_option("--display", o->display,
                     "HOST:PORT of a tev viewer that shows the picture as it grows")
+        ->check(named);
+    sub->add_option("--deep", o->deep,
+                    "Also a deep EXR: beauty apart by depth, for merging by depth")
         ->check(named);
     o->out.add_to(*sub);
     sub->add_flag_callback(

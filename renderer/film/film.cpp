@@ -67,11 +67,12 @@ void PassSamples::clear() {
     std::fill(event_albedos.begin(), event_albedos.end(), Color(0.0f));
 }
 
-Film::Film(const PixelWindow& window, Passes passes)
+Film::Film(const PixelWindow& window, Passes passes, bool deep)
     : window_(window), passes_(std::move(passes)), planes_(passes_.size()) {
     const std::size_t n =
         static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
     beauty_.resize(n);
+    if (deep) deep_.emplace(n);
     if (std::any_of(passes_.begin(), passes_.end(), wants_nearest)) nearest_.resize(n);
     for (std::size_t p = 0; p < passes_.size(); ++p) {
         const Pass& pass = passes_[p];
@@ -98,6 +99,10 @@ void Film::add(int x, int y, std::uint32_t index, const PathSample& s, const Pas
     b.hits += s.alpha > 0.0f;
     ++b.samples;
     if (passes) add_passes(i, index, s, *passes, lane);
+    if (deep_ && s.alpha > 0.0f)
+        deep_->add(i, passes->first[lane].z, s.radiance);
+    else if (deep_)
+        deep_->add_background(i, s.radiance);
 }
 
 void Film::add_passes(std::size_t i, std::uint32_t index, const PathSample& s,
@@ -205,6 +210,7 @@ void Film::merge(const Film& other) {
             for (int c = 0; c < 3; ++c) beauty_[to].rgb[c].add(other.beauty_[from].rgb[c]);
             beauty_[to].hits += other.beauty_[from].hits;
             beauty_[to].samples += other.beauty_[from].samples;
+            if (deep_) deep_->merge(to, *other.deep_, from);
             bool nearer = false;
             if (!nearest_.empty()) {
                 Nearest& a = nearest_[to];
@@ -252,6 +258,14 @@ std::vector<Layer> Film::layers(const PixelWindow& part) const {
         out.push_back(std::move(layer));
     }
     return out;
+}
+
+DeepImage Film::deep_image() const {
+    DeepImage image;
+    image.window = window_;
+    for (std::size_t i = 0; deep_ && i < beauty_.size(); ++i)
+        image.counts.push_back(deep_->put(i, beauty_[i].samples, image.samples));
+    return image;
 }
 
 std::vector<std::uint32_t> Film::sample_counts() const {
@@ -310,6 +324,7 @@ void Film::put_pixel(const Pass& pass, const Plane& plane, std::size_t i, float*
 
 std::size_t Film::bytes() const noexcept {
     std::size_t sum = capacity_bytes(beauty_) + capacity_bytes(nearest_);
+    if (deep_) sum += deep_->bytes();
     for (const Plane& p : planes_) {
         sum += capacity_bytes(p.sums) + capacity_bytes(p.nearest);
         if (p.coverage) sum += p.coverage->bytes();

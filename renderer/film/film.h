@@ -14,6 +14,7 @@
 #include "renderer/core/ray.h"
 #include "renderer/core/sum.h"
 #include "renderer/core/vec.h"
+#include "renderer/film/deep_pixels.h"
 #include "renderer/film/id_coverage.h"
 #include "renderer/film/pass.h"
 
@@ -54,10 +55,13 @@ class Film {
 public:
     static constexpr float kEmptyDepth = 1e10f;
 
-    Film(const PixelWindow& window, Passes passes);
+    /// deep: also keeps beauty apart by depth.
+    Film(const PixelWindow& window, Passes passes, bool deep = false);
 
     const PixelWindow& window() const noexcept { return window_; }
     const Passes& passes() const noexcept { return passes_; }
+    /// Whether add() takes PassSamples.
+    bool takes_passes() const noexcept { return !passes_.empty() || deep_; }
     /// A worker's place for what the passes take.
     PassSamples pass_samples() const;
     /// x, y absolute in the frame, within the window. One thread at a time per pixel. passes: null
@@ -77,12 +81,15 @@ public:
     IdCoverage* coverage(std::size_t pass) noexcept {
         return planes_[pass].coverage ? &*planes_[pass].coverage : nullptr;
     }
+    DeepPixels* deep() noexcept { return deep_ ? &*deep_ : nullptr; }
+    /// Counts and samples; the rest is the caller's.
+    DeepImage deep_image() const;
     /// Samples of all pixels.
     std::vector<std::uint32_t> sample_counts() const;
     std::size_t bytes() const noexcept;
 
-    /// All that the film holds but coverage, as named arrays of plain numbers: what a checkpoint
-    /// saves.
+    /// All that the film holds but coverage and depths, as named arrays of plain numbers: what a
+    /// checkpoint saves.
     struct Array {
         std::string name;
         std::span<std::byte> bytes;
@@ -124,6 +131,7 @@ private:
     std::vector<Beauty> beauty_;
     std::vector<Nearest> nearest_;
     std::vector<Plane> planes_;  // as passes_
+    std::optional<DeepPixels> deep_;
     int light_passes_ = 0;
     bool event_albedos_ = false;
 };

@@ -1,19 +1,11 @@
 #include <ImfChannelList.h>
-#include <ImfChromaticitiesAttribute.h>
-#include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
-#include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfInputPart.h>
-#include <ImfIntAttribute.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
-#include <ImfStandardAttributes.h>
-#include <ImfStringAttribute.h>
-#include <ImfThreading.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -22,11 +14,10 @@
 #include <set>
 
 #include "renderer/api/image.h"
-#include "renderer/core/parallel.h"
 #include "renderer/image/atomic_file.h"
+#include "renderer/image/exr_header.h"
 #include "renderer/image/exr_plan.h"
 #include "renderer/image/exr_strip.h"
-#include "renderer/image/working_space.h"
 
 namespace tessera {
 namespace {
@@ -36,30 +27,6 @@ constexpr std::size_t kMaxName = 31;  // longer names set a flag that older read
 [[noreturn]] void fail_bug(const std::string& what) {
     throw Error(ExitCode::bug, "write_exr: " + what);
 }
-
-/// OpenEXR's stream over an AtomicFile, so that no error of the disk is lost in a library's buffer.
-class Stream : public Imf::OStream {
-public:
-    explicit Stream(AtomicFile& file) : OStream(file.target().c_str()), file_(file) {}
-    void write(const char bytes[], int count) override {
-        file_.write(bytes, static_cast<std::size_t>(count));
-    }
-    std::uint64_t tellp() override { return file_.position(); }
-    void seekp(std::uint64_t position) override { file_.seek(position); }
-
-private:
-    AtomicFile& file_;
-};
-
-struct PutAttribute {
-    Imf::Header& header;
-    const std::string& name;
-    void operator()(int value) const { header.insert(name, Imf::IntAttribute(value)); }
-    void operator()(float value) const { header.insert(name, Imf::FloatAttribute(value)); }
-    void operator()(const std::string& value) const {
-        header.insert(name, Imf::StringAttribute(value));
-    }
-};
 
 Imf::Compression codec_of(ExrCompression c) {
     switch (c) {
@@ -93,35 +60,17 @@ bool belongs(const std::string& name, const LayeredImage& image, const ExrFile& 
     return false;
 }
 
-void put(const std::vector<std::pair<std::string, MetadataValue>>& metadata, Imf::Header& header) {
-    for (const auto& [name, value] : metadata) {
-        if (name.empty() || name.size() > kMaxName)
-            fail_bug("metadata name '" + name + "' must have 1 to 31 bytes");
-        if (header.find(name) != header.end()) fail_bug("metadata name '" + name + "' is taken");
-        std::visit(PutAttribute{header, name}, value);
-    }
-}
-
 Imf::Header make_header(const LayeredImage& image, const ExrFile& file, const ExrPart& part,
                         float dwa_level) {
-    const PixelWindow& w = image.window;
-    const Imath::Box2i display({0, 0}, {image.width - 1, image.height - 1});
-    const Imath::Box2i data({w.x0, w.y0}, {w.x1 - 1, w.y1 - 1});
-    Imf::Header header(display, data);
+    Imf::Header header = exr_header(image.width, image.height, image.window, image.working_space);
     header.compression() = codec_of(part.compression);
     if (is_lossy(part.compression)) header.dwaCompressionLevel() = dwa_level;
-    header.lineOrder() = Imf::INCREASING_Y;
     for (const ExrChannel& channel : part.channels) {
         if (channel.name.empty() || channel.name.size() > kMaxName)
             fail_bug("channel name '" + channel.name + "' must have 1 to 31 bytes");
         if (header.channels().findChannel(channel.name))
             fail_bug("two channels named '" + channel.name + "'");
         header.channels().insert(channel.name, Imf::Channel(channel.half ? Imf::HALF : Imf::FLOAT));
-    }
-    if (const auto xy = chromaticities_of(image.working_space)) {
-        const Chromaticities& c = *xy;
-        Imf::addChromaticities(
-            header, Imf::Chromaticities({c[0], c[1]}, {c[2], c[3]}, {c[4], c[5]}, {c[6], c[7]}));
     }
     if (file.parts.size() > 1) {
         header.setType(Imf::SCANLINEIMAGE);
@@ -130,8 +79,8 @@ Imf::Header make_header(const LayeredImage& image, const ExrFile& file, const Ex
     if (&part == file.parts.data()) {
         std::vector<std::pair<std::string, MetadataValue>> metadata = image.metadata;
         std::erase_if(metadata, [&](const auto& m) { return !belongs(m.first, image, file); });
-        put(metadata, header);
-        put(file.metadata, header);
+        put_metadata(metadata, header);
+        put_metadata(file.metadata, header);
     }
     return header;
 }
@@ -177,11 +126,6 @@ Imf::FrameBuffer frame_of(ExrStrip& strip, const std::vector<ExrChannel>& channe
                        static_cast<std::size_t>(bytes), static_cast<std::size_t>(bytes * width)));
     }
     return frame;
-}
-
-/// Threads for compression: no more than one file keeps busy.
-int thread_count(int asked) {
-    return std::clamp(asked > 0 ? asked : available_threads().threads, 1, 16);
 }
 
 /// Lines of a chunk.
@@ -258,7 +202,7 @@ void write_part(Out& out, const ExrPart& part, const PixelWindow& window, WriteR
 
 void write_file(AtomicFile& file, const std::vector<Imf::Header>& headers, const ExrFile& plan,
                 const PixelWindow& window, int threads, WriteReport& report) {
-    Stream stream(file);
+    ExrStream stream(file);
     if (headers.size() == 1) {
         Imf::OutputFile out(stream, headers[0], threads);
         write_part(out, plan.parts[0], window, report);
@@ -283,9 +227,7 @@ WriteReport write_exr(const LayeredImage& image, const std::string& path,
         std::vector<std::vector<Imf::Header>> headers;
         for (const ExrFile& plan : plans)
             headers.push_back(make_headers(image, plan, options.dwa_level));
-        const int threads = thread_count(options.threads);
-        // The pool is shared by the process: it grows and never shrinks under another writer.
-        if (Imf::globalThreadCount() < threads) Imf::setGlobalThreadCount(threads);
+        const int threads = exr_threads(options.threads);
         std::vector<std::unique_ptr<AtomicFile>> files;
         for (std::size_t i = 0; i < plans.size(); ++i) {
             files.push_back(std::make_unique<AtomicFile>(plans[i].path));

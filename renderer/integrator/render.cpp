@@ -32,7 +32,7 @@ public:
         : scene_(scene),
           settings_(settings),
           window_(window_of(scene.film())),
-          film_(settings.resume.empty() ? Film(window_, scene.passes())
+          film_(settings.resume.empty() ? Film(window_, scene.passes(), settings.deep)
                                         : resumed_film(scene, window_, settings, resumed_s_)),
           header_(film_header(scene, window_, settings.first_sample)),
           times_(std::any_of(scene.passes().begin(), scene.passes().end(),
@@ -156,7 +156,7 @@ private:
         BlockSamples samples;
         PassSamples passes = film_.pass_samples();
         PathPasses path_passes(scene_, passes);
-        if (!film_.passes().empty()) job.passes = &path_passes;
+        if (film_.takes_passes()) job.passes = &path_passes;
         bool whole = true;
         for (int y = tile.y0 & ~(kBlockSize - 1); whole && y < tile.y1; y += kBlockSize) {
             for (int x = tile.x0 & ~(kBlockSize - 1); whole && x < tile.x1; x += kBlockSize) {
@@ -225,6 +225,7 @@ private:
         r.image.window = window_;
         r.image.working_space = scene_.film().working_space;
         r.image.layers = film_.layers();
+        if (film_.deep()) r.deep = deep_image();
         r.stats = scene_.statistics();
         Statistics& s = r.stats;
         s.threads = workers_.threads();
@@ -250,8 +251,20 @@ private:
         }
         add_mattes(film_, header_.ids, r.image.layers, s.notes);
         r.image.metadata = header_.metadata;
+        if (const std::size_t crowded = film_.deep() ? film_.deep()->crowded() : 0; crowded > 0)
+            s.notes.push_back("deep: " + std::to_string(crowded) + " pixels see more than " +
+                              std::to_string(DeepPixels::kMaxDepths) +
+                              " depths; theirs are coarser");
         if (film_.passes().empty()) s.left_out.push_back({"passes", "only beauty was asked for"});
         return r;
+    }
+
+    DeepImage deep_image() const {
+        DeepImage image = film_.deep_image();
+        image.width = scene_.film().width;
+        image.height = scene_.film().height;
+        image.working_space = scene_.film().working_space;
+        return image;
     }
 
     const Scene& scene_;

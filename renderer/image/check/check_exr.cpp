@@ -6,6 +6,7 @@
 #include "renderer/image/check/check_mattes.h"
 #include "renderer/image/check/check_sums.h"
 #include "renderer/image/check/check_values.h"
+#include "renderer/image/check/deep_chunks.h"
 #include "renderer/image/check/exr_strips.h"
 
 namespace tessera {
@@ -53,6 +54,12 @@ ExrFindings check_exr(const std::string& path) {
     const bool deep = std::any_of(file.parts.begin(), file.parts.end(),
                                   [](const RawPart& part) { return part.deep; });
     if (deep) out.push_back({ExrRule::deep, "file", "it holds deep parts"});
+    const RawPart& first = file.parts[0];
+    if (first.deep && !first.tiled && !has(out, ExrRule::bad_window) &&
+        !has(out, ExrRule::truncated)) {
+        const std::string damage = deep_damage(path, file);
+        if (!damage.empty()) out.push_back({ExrRule::damaged_pixels, "file", damage});
+    }
     if (!has(out, ExrRule::bad_window) && !file.parts[0].deep)
         check_pixels(path, file, mattes, out);
     std::stable_sort(out.begin(), out.end(), [](const ExrFinding& a, const ExrFinding& b) {

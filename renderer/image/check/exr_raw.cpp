@@ -27,7 +27,8 @@ public:
     explicit Reader(const std::string& path)
         : file_(path, std::ios::binary), size_(std::filesystem::file_size(path)) {}
 
-    std::uint64_t left() { return size_ - position_; }
+    std::uint64_t left() const { return size_ - position_; }
+    std::uint64_t position() const { return position_; }
     std::uint64_t size() const { return size_; }
 
     std::string bytes(std::uint64_t count) {
@@ -45,13 +46,14 @@ public:
         return out;
     }
     /// Anywhere in the file; reading goes on where it was.
-    std::uint64_t size_of_chunk(std::uint64_t offset) {
-        std::uint32_t size = 0;
+    template <class T>
+    std::uint64_t peek(std::uint64_t offset) {
+        T number = 0;
         file_.seekg(static_cast<std::streamoff>(offset));
-        file_.read(reinterpret_cast<char*>(&size), sizeof size);
+        file_.read(reinterpret_cast<char*>(&number), sizeof number);
         if (!file_) throw Damage("the file cannot be read");
         file_.seekg(static_cast<std::streamoff>(position_));
-        return size;
+        return number;
     }
     std::string word(std::size_t longest) {
         std::string out;
@@ -171,6 +173,7 @@ std::uint64_t count_tiles(const RawPart& part) {
 
 // A chunk that is missing has offset 0 or one behind the end; the last one may be there in part.
 void read_table(Reader& in, bool multipart, RawPart& part) {
+    part.table = in.position();
     part.chunks = part.tiled ? count_tiles(part) : parts_of(part.data.height(), part.chunk_lines());
     const std::uint64_t there = std::min(part.chunks, in.left() / 8);
     part.missing = part.chunks - there;
@@ -182,11 +185,24 @@ void read_table(Reader& in, bool multipart, RawPart& part) {
         else
             last = std::max(last, offset);
     }
-    if (last == 0 || part.deep) return;
-    // Before the pixels: the part's number, a line or a tile and its level, the size.
+    if (last == 0) return;
+    // Before the pixels: the part's number, a line or a tile and its level, the size; of deep ones
+    // the sizes of the counts, of the samples, and of these before compression.
     const std::uint64_t size_at = last + (multipart ? 4 : 0) + (part.tiled ? 16 : 4);
-    const std::uint64_t end = size_at + 4;
-    if (end > in.size() || in.size() - end < in.size_of_chunk(size_at)) ++part.missing;
+    const std::uint64_t end = size_at + (part.deep ? 24 : 4);
+    if (end > in.size()) {
+        ++part.missing;
+        return;
+    }
+    std::uint64_t left = in.size() - end, size = 0;
+    if (part.deep) {
+        const auto counts = in.peek<std::uint64_t>(size_at);
+        left -= std::min(left, counts);
+        size = in.peek<std::uint64_t>(size_at + 8);
+    } else {
+        size = in.peek<std::uint32_t>(size_at);
+    }
+    if (left < size) ++part.missing;
 }
 
 void read_all(const std::string& path, RawExr& out) {

@@ -36,6 +36,7 @@ struct RawPart {
     std::vector<RawChannel> channels;
     std::map<std::string, std::pair<std::string, std::string>> attributes;  // type, bytes
     bool tiled = false, deep = false;
+    std::uint64_t table = 0;  // where the chunks' places are listed
     std::uint64_t chunks = 0, missing = 0;
 
     /// A string attribute, "" if there is none.

@@ -1,0 +1,61 @@
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "renderer/api/deep.h"
+#include "renderer/api/error.h"
+#include "renderer/cli/commands.h"
+#include "renderer/cli/console.h"
+#include "renderer/cli/output_check.h"
+#include "renderer/core/log.h"
+
+namespace tessera {
+namespace {
+
+struct FlattenOptions {
+    std::vector<std::string> files;
+    std::string output;
+    bool all_float = false, quiet = false;
+};
+
+int run_flatten(const FlattenOptions& o) {
+    set_log_level(o.quiet ? LogLevel::quiet : LogLevel::normal);
+    check_outputs({{o.output, "--output", {".exr"}}});
+    LayeredImage image = flatten_deep_exr(o.files);
+    image.metadata.emplace_back("tessera/version", std::string(TESSERA_VERSION));
+    image.metadata.emplace_back("tessera/colorSpace", image.working_space);
+    WriteOptions options;
+    options.all_float = o.all_float;
+    const WriteReport report = write_exr(image, o.output, options);
+    if (report.clamped > 0 && !o.quiet)
+        log_warning(
+            fmt::format("{} values are beyond half's 65504 and were clamped (--float keeps them)",
+                        report.clamped));
+    log_info(fmt::format("wrote    {} ({:.1f} MiB) of {} deep file{}", o.output,
+                         static_cast<double>(report.bytes) / (1 << 20), o.files.size(),
+                         o.files.size() == 1 ? "" : "s"));
+    return 0;
+}
+
+}  // namespace
+
+void add_flatten(CLI::App& app, CommandLine& line) {
+    CLI::App* sub =
+        app.add_subcommand("flatten", "Merge deep EXR files by depth into a flat picture");
+    auto o = std::make_shared<FlattenOptions>();
+    sub->add_option("files", o->files, "Deep files of one frame, as render --deep writes them")
+        ->required();
+    sub->add_option("-o,--output", o->output, "The EXR to write")->required();
+    sub->add_flag("--float", o->all_float, "All channels as 32-bit float");
+    sub->add_flag("-q,--quiet", o->quiet, "Say nothing but errors");
+    sub->footer(
+        "Examples:\n"
+        "  tessera flatten deep.exr -o flat.exr\n"
+        "  tessera flatten car_deep.exr street_deep.exr -o both.exr --float");
+    sub->callback([o, &line] { line.run = [o] { return run_flatten(*o); }; });
+}
+
+}  // namespace tessera
