@@ -50,7 +50,7 @@ class Layers(TesseraTest):
             ("renderer/image/a.cpp", "renderer/geometry/mesh.h"),
             ("renderer/geometry/a.h", "renderer/image/texture.h"),
             ("renderer/lights/a.h", "renderer/geometry/mesh.h"),
-            ("renderer/film/a.h", "renderer/image/texture.h"),
+            ("renderer/film/a.h", "renderer/lights/light.h"),
             ("renderer/lights/a.h", "renderer/film/film.h"),
             ("renderer/scene/a.h", "renderer/integrator/path.h"),
             ("renderer/io/a.cpp", "renderer/scene/scene.h"),

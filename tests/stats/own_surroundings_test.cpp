@@ -150,7 +150,7 @@ TEST_CASE("environment images: those that are not given are the file, or the con
     CHECK(length(seen(hidden, matte).first) == 0.0f);
     CHECK(half_red(seen(hidden, matte).second));
     CHECK(images.folder.failure("[environment]\nreflection = 'none.exr'")
-              .find("s.toml:3:1: environment: file 'none.exr'") != std::string::npos);
+              .find("environment: reflection 'none.exr'") != std::string::npos);
 }
 
 TEST_CASE("environment images: the ray tree mirrors the image for reflections") {
