@@ -1,7 +1,9 @@
 #include "materials/graph.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "materials/fresnel.h"
 #include "materials/nodes/edge_wear.h"
 #include "materials/relief.h"
 #include "renderer/core/sampler.h"
@@ -18,8 +20,11 @@ bool reads_point(NodeOp op) {
         case NodeOp::position:
         case NodeOp::normal:
         case NodeOp::geomcolor:
+        case NodeOp::viewdirection:
         case NodeOp::facingratio:
+        case NodeOp::fresnel:
         case NodeOp::random:
+        case NodeOp::named:
         case NodeOp::image:
         case NodeOp::triplanar:
         case NodeOp::tangent:
@@ -37,10 +42,21 @@ bool same(const Wire& a, const Wire& b) {
 }
 
 bool same(const Graph::Op& a, const Graph::Op& b) {
-    if (a.op != b.op || a.texture != b.texture || a.inputs != b.inputs) return false;
+    if (a.op != b.op || a.texture != b.texture || a.vector != b.vector || a.inputs != b.inputs)
+        return false;
     for (int i = 0; i < a.inputs; ++i)
         if (!same(a.in[i], b.in[i])) return false;
     return true;
+}
+
+NamedBy whose(float by) {
+    return by >= 2.0f ? NamedBy::material : (by >= 1.0f ? NamedBy::object : NamedBy::instance);
+}
+
+// Objects are told apart by face; the rest is known of any point.
+bool goes_by_object(const Graph::Op& op) {
+    if (op.op != NodeOp::random && op.op != NodeOp::named) return false;
+    return op.in[1].op >= 0 || whose(op.in[1].constant.x) == NamedBy::object;
 }
 
 // As many as a node has are written; clearing the rest would take longer than many a node.
@@ -57,6 +73,12 @@ Vec3f output_of(const NodeResult& r, int output) {
 
 }  // namespace
 
+// Directions that are zero when none is given: how the surface faces the viewer is known.
+bool faces(NodeOp op) { return op == NodeOp::facingratio || op == NodeOp::fresnel; }
+
+// Whose wires carry directions of the world, found in a tangent frame.
+bool in_tangent_frame(const Graph::Op& op) { return op.op == NodeOp::cloth && op.vector > 0; }
+
 // An input for a place or normal that is given none takes the surface's own.
 Wire Graph::wire_of(const std::vector<NodeDesc>& nodes, const NodeDesc& desc, std::size_t input) {
     const NodeInputInfo& info = kNodes[static_cast<std::size_t>(desc.type)].inputs()[input];
@@ -67,7 +89,8 @@ Wire Graph::wire_of(const std::vector<NodeDesc>& nodes, const NodeDesc& desc, st
     }
     for (const NodeOp op : {NodeOp::texcoord, NodeOp::position, NodeOp::normal}) {
         const NodeInfo& of_surface = kNodes[static_cast<std::size_t>(op)];
-        if (info.name != of_surface.name) continue;
+        if (info.name != of_surface.name || faces(kNodes[static_cast<std::size_t>(desc.type)].op))
+            continue;
         Op own;
         own.op = op;
         own.inputs = static_cast<std::uint8_t>(of_surface.inputs().size());
@@ -79,7 +102,9 @@ Wire Graph::wire_of(const std::vector<NodeDesc>& nodes, const NodeDesc& desc, st
 }
 
 Wire Graph::add(const std::vector<NodeDesc>& nodes, int node, int output) {
-    const auto found = known_.find(node);
+    const int vector =
+        is_vector_output(nodes[static_cast<std::size_t>(node)].type, output) ? output : 0;
+    const auto found = known_.find({node, vector});
     Wire wire;
     if (found != known_.end()) {
         wire = found->second;
@@ -89,13 +114,14 @@ Wire Graph::add(const std::vector<NodeDesc>& nodes, int node, int output) {
         op.op = kNodes[static_cast<std::size_t>(desc.type)].op;
         op.color = desc.color;
         op.texture = desc.texture;
+        op.vector = static_cast<std::uint8_t>(vector);
         op.inputs = static_cast<std::uint8_t>(desc.inputs.size());
         for (std::size_t i = 0; i < desc.inputs.size(); ++i) op.in[i] = wire_of(nodes, desc, i);
         count_bumps(desc, op);
         wire = add_op(desc, op);
-        known_[node] = wire;
+        known_[{node, vector}] = wire;
     }
-    if (wire.op >= 0) wire.output = static_cast<std::uint8_t>(output);
+    if (wire.op >= 0 && vector == 0) wire.output = static_cast<std::uint8_t>(output);
     return wire;
 }
 
@@ -140,13 +166,16 @@ Wire Graph::add_op(const NodeDesc& desc, const Op& op) {
     reads_uv_ |= op.op == NodeOp::texcoord || op.op == NodeOp::image;
     reads_geometry_ |= op.op == NodeOp::position || op.op == NodeOp::normal ||
                        op.op == NodeOp::facingratio || op.op == NodeOp::random ||
-                       op.op == NodeOp::triplanar || op.op == NodeOp::bump ||
-                       op.op == NodeOp::edgewear;
-    reads_tangent_ |=
-        op.op == NodeOp::tangent || op.op == NodeOp::normalmap || op.op == NodeOp::bump;
+                       op.op == NodeOp::viewdirection || op.op == NodeOp::fresnel ||
+                       op.op == NodeOp::named || op.op == NodeOp::triplanar ||
+                       op.op == NodeOp::bump || op.op == NodeOp::edgewear;
+    reads_tangent_ |= op.op == NodeOp::tangent || op.op == NodeOp::normalmap ||
+                      op.op == NodeOp::bump || in_tangent_frame(op);
     reads_color_ |= op.op == NodeOp::geomcolor;
     reads_attributes_ |= reads_color_ || reads_tangent_ || op.op == NodeOp::normal ||
-                         op.op == NodeOp::triplanar || op.op == NodeOp::facingratio;
+                         op.op == NodeOp::triplanar || op.op == NodeOp::facingratio ||
+                         op.op == NodeOp::fresnel || op.op == NodeOp::viewdirection ||
+                         goes_by_object(op);
     if (op.op == NodeOp::edgewear) {
         const float angle = op.in[2].op < 0 ? op.in[2].constant.x : 0.0f;
         crease_angle_ = std::min(crease_angle_, std::max(angle, kLeastCrease_deg));
@@ -185,12 +214,32 @@ NodeResult GraphRun::run(const Graph::Op& op) noexcept {
             return {in_.n, 0.0f, {}};
         case NodeOp::geomcolor:
             return {in_.vertex_color, 0.0f, {}};
-        case NodeOp::facingratio:
-            return {Vec3f(in_.facing), 0.0f, {}};
+        case NodeOp::viewdirection:
+            return {in_.view, 0.0f, {}};
+        case NodeOp::facingratio: {
+            const float along = facing(op.in[0], op.in[1]);
+            const float forward = value(op.in[2]).x > 0.5f ? std::fabs(along) : along;
+            return {Vec3f(value(op.in[3]).x > 0.5f ? 1.0f - forward : forward), 0.0f, {}};
+        }
+        case NodeOp::fresnel: {
+            const float cosine = std::min(std::fabs(facing(Wire(), op.in[1])), 1.0f);
+            const float ior = std::clamp(value(op.in[0]).x, 1e-3f, 1e3f);
+            return {Vec3f(fresnel_dielectric(cosine, ior)), 0.0f, {}};
+        }
         case NodeOp::random: {
             const auto seed = static_cast<std::uint32_t>(value(op.in[0]).x * 256.0f + 0.5f);
-            const std::uint32_t h = hash_combine(hash_combine(0x72616e64u, in_.instance), seed);
+            const std::uint32_t who = name(value(op.in[1]).x);
+            const std::uint32_t h = hash_combine(hash_combine(0x72616e64u, who), seed);
             return {Vec3f(static_cast<float>(h >> 8) * 0x1p-24f), 0.0f, {}};
+        }
+        case NodeOp::named: {
+            const Vec3f halves = value(op.in[0]);
+            const std::uint32_t who = whose(value(op.in[1]).x) == NamedBy::instance
+                                          ? in_.instance_name
+                                          : name(value(op.in[1]).x);
+            const bool is = halves.x == static_cast<float>(who & 0xffffu) &&
+                            halves.y == static_cast<float>(who >> 16);
+            return {Vec3f(is ? 1.0f : 0.0f), 0.0f, {}};
         }
         case NodeOp::image: {
             if (op.texture < 0) return {Vec3f{1, 0, 1}, 0.0f, Vec3f(1.0f)};
@@ -257,7 +306,7 @@ NodeResult GraphRun::run(const Graph::Op& op) noexcept {
             return result(value(op.in[0]).x > value(op.in[1]).x ? op.in[2] : op.in[3]);
         case NodeOp::switch_: {
             const float which = value(op.in[0]).x;
-            const int at = which >= 4.0f ? 4 : (which >= 0.0f ? static_cast<int>(which) : 0);
+            const int at = which >= 9.0f ? 9 : (which >= 0.0f ? static_cast<int>(which) : 0);
             return result(op.in[1 + at]);
         }
         default:
@@ -265,7 +314,30 @@ NodeResult GraphRun::run(const Graph::Op& op) noexcept {
     }
     Inputs in;
     for (int i = 0; i < op.inputs; ++i) in.at[i] = result(op.in[i]);
-    return run_node(op.op, in.at);
+    if (op.vector == 0) return run_node(op.op, in.at);
+    const Vec3f v = run_vector_output(op.op, op.vector, in.at);
+    if (!in_tangent_frame(op)) return {v, 0.0f, {}};
+    return {normal_from_tangent_space(in_, v), 0.0f, {}};
+}
+
+// Cosine between a normal and the way to the viewer; directions of no length are the surface's own.
+float GraphRun::facing(const Wire& view, const Wire& normal) noexcept {
+    const Vec3f v = value(view), n = value(normal);
+    const float lv = length(v), ln = length(n);
+    if (!(lv > 0.0f) && !(ln > 0.0f)) return in_.front ? in_.facing : -in_.facing;
+    const Vec3f along = lv > 0.0f ? v / lv : in_.view;
+    return -dot(along, ln > 0.0f ? n / ln : outward_normal(in_));
+}
+
+std::uint32_t GraphRun::name(float by) const noexcept {
+    switch (whose(by)) {
+        case NamedBy::object:
+            return in_.object_name;
+        case NamedBy::material:
+            return in_.material_name;
+        default:
+            return in_.instance;
+    }
 }
 
 }  // namespace tessera

@@ -6,6 +6,7 @@
 #include <bitset>
 #include <cstdint>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "materials/shade_input.h"
@@ -38,6 +39,7 @@ public:
         NodeOp op = NodeOp::constant;
         bool color = true;
         int texture = -1;
+        std::uint8_t vector = 0;  // the vector output that it gives in place of the main one
         std::uint8_t inputs = 0;
         std::uint8_t bumps = 0;  // each of them asks for its height three times
         Wire in[kMaxNodeInputs];
@@ -66,7 +68,7 @@ private:
     Wire wire_of(const std::vector<NodeDesc>& nodes, const NodeDesc& desc, std::size_t input);
 
     std::vector<Op> ops_;
-    std::map<int, Wire> known_;  // by node, its main output
+    std::map<std::pair<int, int>, Wire> known_;  // by node and vector output
     bool reads_uv_ = false, reads_geometry_ = false, reads_color_ = false, reads_tangent_ = false;
     bool reads_attributes_ = false;
     float crease_angle_ = kInfinity;
@@ -85,6 +87,8 @@ public:
 private:
     NodeResult result(const Wire& wire) noexcept;
     NodeResult run(const Graph::Op& op) noexcept;
+    float facing(const Wire& view, const Wire& normal) noexcept;
+    std::uint32_t name(float by) const noexcept;
 
     const Graph& graph_;
     const ShadeInput& in_;
@@ -97,5 +101,10 @@ private:
 
 /// A node of plain arithmetic, noise or pattern; inputs in the table's order, all there.
 NodeResult run_node(NodeOp op, const NodeResult* in) noexcept;
+/// One of its vector outputs; directions are those of a tangent frame, z outward.
+Vec3f run_vector_output(NodeOp op, int output, const NodeResult* in) noexcept;
+
+/// What random and named go by, as the number that stands in `by`.
+enum class NamedBy : std::uint8_t { instance, object, material };
 
 }  // namespace tessera

@@ -37,34 +37,49 @@ void add_cell_3d(const Place& p, int i, int j, int k, NearestPoints& n) {
 // nearest point is within sqrt(3), since the own cell and the one across the nearest wall hold one.
 float second_ring(LatticeCell c) { return 1.0f + std::min(c.f, 1.0f - c.f); }
 
-}  // namespace
-
-NearestPoints nearest_points(Vec2f at, float jitter) noexcept {
+template <float NearestPoints::*farthest>
+NearestPoints search(Vec2f at, float jitter) {
     const Place p{lattice_cell(at.x), lattice_cell(at.y), {}, jitter};
     NearestPoints n;
     for (int j = -1; j <= 1; ++j)
         for (int i = -1; i <= 1; ++i) add_cell_2d(p, i, j, n);
-    if (n.d2 > sqr(std::min(second_ring(p.x), second_ring(p.y))))
+    if (n.*farthest > sqr(std::min(second_ring(p.x), second_ring(p.y))))
         for (int j = -2; j <= 2; ++j)
             for (int i = -2; i <= 2; ++i)
                 if (std::max(std::abs(i), std::abs(j)) == 2) add_cell_2d(p, i, j, n);
     return n;
 }
 
-NearestPoints nearest_points(Vec3f at, float jitter) noexcept {
+template <float NearestPoints::*farthest>
+NearestPoints search(Vec3f at, float jitter) {
     const Place p{lattice_cell(at.x), lattice_cell(at.y), lattice_cell(at.z), jitter};
     NearestPoints n;
     for (int k = -1; k <= 1; ++k)
         for (int j = -1; j <= 1; ++j)
             for (int i = -1; i <= 1; ++i) add_cell_3d(p, i, j, k, n);
     const float ring = std::min({second_ring(p.x), second_ring(p.y), second_ring(p.z)});
-    if (n.d2 > sqr(ring))
+    if (n.*farthest > sqr(ring))
         for (int k = -2; k <= 2; ++k)
             for (int j = -2; j <= 2; ++j)
                 for (int i = -2; i <= 2; ++i)
                     if (std::max({std::abs(i), std::abs(j), std::abs(k)}) == 2)
                         add_cell_3d(p, i, j, k, n);
     return n;
+}
+
+}  // namespace
+
+NearestPoints nearest_points(Vec2f at, float jitter) noexcept {
+    return search<&NearestPoints::d2>(at, jitter);
+}
+NearestPoints nearest_points(Vec3f at, float jitter) noexcept {
+    return search<&NearestPoints::d2>(at, jitter);
+}
+NearestPoints nearest_three(Vec2f at, float jitter) noexcept {
+    return search<&NearestPoints::d3>(at, jitter);
+}
+NearestPoints nearest_three(Vec3f at, float jitter) noexcept {
+    return search<&NearestPoints::d3>(at, jitter);
 }
 
 }  // namespace tessera

@@ -50,5 +50,8 @@ struct Worley {
 /// jitter is clamped to [0, 1]; with 0 the points are the cells' centres.
 Worley worleynoise2d(Vec2f p, float jitter, float width) noexcept;
 Worley worleynoise3d(Vec3f p, float jitter, float width) noexcept;
+/// Distances to the nearest three points.
+Vec3f worleynoise2d_vec3(Vec2f p, float jitter, float width) noexcept;
+Vec3f worleynoise3d_vec3(Vec3f p, float jitter, float width) noexcept;
 
 }  // namespace tessera

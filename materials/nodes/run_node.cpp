@@ -39,6 +39,11 @@ int whole(float x, int low, int high) {
         std::clamp(std::isfinite(x) ? x : 0.0f, static_cast<float>(low), static_cast<float>(high)));
 }
 
+// Share of a footprint about x that lies at an edge or above.
+float beyond(float x, float edge, float width) {
+    return width > 0.0f ? clamp01((x - edge) / width + 0.5f) : (x < edge ? 0.0f : 1.0f);
+}
+
 NodeResult arithmetic(NodeOp op, const NodeResult* in) {
     const Vec3f a = in[0].v, b = in[1].v;
     const auto plain = [](Vec3f v) { return NodeResult{v, 0.0f, {}}; };
@@ -80,6 +85,12 @@ NodeResult arithmetic(NodeOp op, const NodeResult* in) {
             return plain(each(a, [](float x) { return std::sin(x); }));
         case NodeOp::cos:
             return plain(each(a, [](float x) { return std::cos(x); }));
+        case NodeOp::asin:
+            return plain(each(a, [](float x) { return std::asin(std::clamp(x, -1.0f, 1.0f)); }));
+        case NodeOp::acos:
+            return plain(each(a, [](float x) { return std::acos(std::clamp(x, -1.0f, 1.0f)); }));
+        case NodeOp::atan2:
+            return plain(each(a, b, [](float y, float x) { return std::atan2(y, x); }));
         case NodeOp::sqrt:
             return plain(each(a, [](float x) { return safe_sqrt(x); }));
         case NodeOp::ln:
@@ -119,6 +130,10 @@ NodeResult arithmetic(NodeOp op, const NodeResult* in) {
             return plain(lerp(a, b, clamp01(in[2].v.x)));
         case NodeOp::ramptb:
             return plain(lerp(b, a, clamp01(in[2].v.y)));
+        case NodeOp::splitlr:
+            return plain(lerp(a, b, beyond(in[3].v.x, in[2].v.x, in[3].width)));
+        case NodeOp::splittb:
+            return plain(lerp(b, a, beyond(in[3].v.y, in[2].v.x, in[3].width)));
         case NodeOp::combine3:
             return plain({a.x, b.x, in[2].v.x});
         case NodeOp::extract:
@@ -126,7 +141,7 @@ NodeResult arithmetic(NodeOp op, const NodeResult* in) {
         case NodeOp::ifgreater:
             return a.x > b.x ? in[2] : in[3];
         case NodeOp::switch_:
-            return in[1 + whole(a.x, 0, 4)];
+            return in[1 + whole(a.x, 0, 9)];
         case NodeOp::rotate2d:
             return turned(in[0], b.x);
         case NodeOp::rotate3d: {
@@ -180,10 +195,11 @@ NodeResult color_node(NodeOp op, const NodeResult* in) {
     }
 }
 
+FractalParams fractal_of(const NodeResult* in) {
+    return {whole(in[1].v.x, 0, 24), in[2].v.x, in[3].v.x};
+}
+
 NodeResult noise_node(NodeOp op, const NodeResult* in) {
-    const auto fractal = [&] {
-        return FractalParams{whole(in[1].v.x, 0, 24), in[2].v.x, in[3].v.x};
-    };
     const auto scattered = [](const Worley& w) {
         return NodeResult{Vec3f(w.f1), 0.0f, {w.f2, w.value, 0.0f}};
     };
@@ -193,9 +209,9 @@ NodeResult noise_node(NodeOp op, const NodeResult* in) {
         case NodeOp::noise3d:
             return number(in[0].v.x * noise3d(in[2].v, in[2].width) + in[1].v.x);
         case NodeOp::fractal2d:
-            return number(in[0].v.x * fractal2d(two(in[4].v), fractal(), in[4].width));
+            return number(in[0].v.x * fractal2d(two(in[4].v), fractal_of(in), in[4].width));
         case NodeOp::fractal3d:
-            return number(in[0].v.x * fractal3d(in[4].v, fractal(), in[4].width));
+            return number(in[0].v.x * fractal3d(in[4].v, fractal_of(in), in[4].width));
         case NodeOp::cellnoise2d:
             return number(cellnoise2d(two(in[0].v), in[0].width));
         case NodeOp::cellnoise3d:
@@ -209,7 +225,41 @@ NodeResult noise_node(NodeOp op, const NodeResult* in) {
     }
 }
 
+Cloth cloth_of(const NodeResult* in) {
+    const auto n = [&](int i) { return in[i].v.x; };
+    ClothParams p;
+    p.threads = two(in[1].v), p.over = whole(n(2), 1, 8), p.under = whole(n(3), 1, 8);
+    p.step = whole(n(4), -64, 64), p.thread_width = n(5), p.relief = n(6);
+    p.variation = n(7), p.fibres = n(8), p.warp = in[9].v, p.weft = in[10].v;
+    return cloth(two(in[0].v), p, in[0].width);
+}
+
 }  // namespace
+
+Vec3f run_vector_output(NodeOp op, int output, const NodeResult* in) noexcept {
+    const float amplitude = in[0].v.x;
+    switch (op) {
+        case NodeOp::noise2d:
+            return noise2d_vec3(two(in[2].v), in[2].width) * amplitude + in[1].v;
+        case NodeOp::noise3d:
+            return noise3d_vec3(in[2].v, in[2].width) * amplitude + in[1].v;
+        case NodeOp::fractal2d:
+            return fractal2d_vec3(two(in[4].v), fractal_of(in), in[4].width) * amplitude;
+        case NodeOp::fractal3d:
+            return fractal3d_vec3(in[4].v, fractal_of(in), in[4].width) * amplitude;
+        case NodeOp::worleynoise2d:
+            return worleynoise2d_vec3(two(in[0].v), in[1].v.x, in[0].width);
+        case NodeOp::worleynoise3d:
+            return worleynoise3d_vec3(in[0].v, in[1].v.x, in[0].width);
+        case NodeOp::cloth: {
+            constexpr int kNormal = 4;
+            const Cloth c = cloth_of(in);
+            return output == kNormal ? c.normal : Vec3f{c.direction.x, c.direction.y, 0.0f};
+        }
+        default:
+            return {};
+    }
+}
 
 NodeResult run_node(NodeOp op, const NodeResult* in) noexcept {
     const auto n = [&](int i) { return in[i].v.x; };
@@ -242,11 +292,7 @@ NodeResult run_node(NodeOp op, const NodeResult* in) noexcept {
             return {m.color, 0.0f, {m.vein, 0.0f, 0.0f}};
         }
         case NodeOp::cloth: {
-            ClothParams p;
-            p.threads = two(c(1)), p.over = whole(n(2), 1, 8), p.under = whole(n(3), 1, 8);
-            p.step = whole(n(4), -64, 64), p.thread_width = n(5), p.relief = n(6);
-            p.variation = n(7), p.fibres = n(8), p.warp = c(9), p.weft = c(10);
-            const Cloth w = cloth(two(c(0)), p, in[0].width);
+            const Cloth w = cloth_of(in);
             return {w.color, 0.0f, {w.height, w.coverage, w.warp_share}};
         }
         case NodeOp::rust: {

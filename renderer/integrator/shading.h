@@ -171,6 +171,7 @@ ShadeInput shade_input(const Scene& scene, const ShaderProgram* program, const H
             if (!placed) orient_input(s, in);
             in.front = dot(s.ng, d) <= 0.0f;
             if (!in.front) in.n = -s.ns;
+            in.view = d;
             in.facing = std::fabs(dot(s.ns, d));
             in.p_width = cone_width / std::max(std::sqrt(std::fabs(dot(s.ng, d))), 0.2f);
         }

@@ -148,8 +148,8 @@ int MtlLibraries::Impl::texture(const MtlTexture& texture, Library& library, std
     }
     if (!found.note.empty())
         library.tally.note("texture", line, "'" + texture.file + "' " + found.note);
-    if (!files.missing_frame.empty())
-        problems.damage(loc, "texture '" + files.name + "' " + files.missing_frame);
+    if (!files.missing.empty())
+        problems.damage(loc, "texture '" + files.name + "' " + files.missing);
     TextureDesc desc;
     // A missing one, or one that is no regular file, keeps its name, below the library's folder,
     // for the texture store to report.

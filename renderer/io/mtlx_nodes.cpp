@@ -18,11 +18,8 @@ using Kind = MtlxValue::Kind;
 struct FixedInput {
     std::string_view category, input;
 };
-constexpr std::array<FixedInput, 5> kZeroInputs{{{"texcoord", "index"},
-                                                 {"geomcolor", "index"},
-                                                 {"worleynoise2d", "style"},
-                                                 {"worleynoise3d", "style"},
-                                                 {"place2d", "operationorder"}}};
+constexpr std::array<FixedInput, 3> kZeroInputs{
+    {{"texcoord", "index"}, {"geomcolor", "index"}, {"place2d", "operationorder"}}};
 
 bool must_be_zero(std::string_view category, std::string_view input) {
     return std::any_of(kZeroInputs.begin(), kZeroInputs.end(), [&](const FixedInput& f) {
@@ -87,7 +84,7 @@ public:
         MtlxValue out{.type = at_.type, .source = &at_.node};
         const int output = output_number();
         if (output < 0) return std::nullopt;
-        if (output > 0) out.type = MtlxType::scalar;
+        if (output > 0) out.type = beside_type(output);
         out.rgb = {{}, graph_.push(std::move(desc_)), output};
         if (has_fourth(out.type)) out.fourth = componentwise() ? fourth_of() : alpha_;
         return out;
@@ -110,6 +107,17 @@ private:
         }
         graph_.damage(at_, "has no output '" + at_.output + "'" + did_you_mean(at_.output, names));
         return -1;
+    }
+
+    MtlxType beside_type(int output) const {
+        switch (info_.outputs()[static_cast<std::size_t>(output - 1)].type) {
+            case NodeType::color:
+                return MtlxType::color3;
+            case NodeType::vector3:
+                return MtlxType::vector3;
+            default:
+                return MtlxType::scalar;
+        }
     }
 
     void read_input(const MtlxElement& element) {
@@ -214,10 +222,15 @@ std::optional<MtlxValue> read_position(MtlxGraph& graph, const At& at) {
 
 std::optional<MtlxValue> read_direction(MtlxGraph& graph, const At& at) {
     MtlxValue out{.type = MtlxType::vector3, .source = &at.node};
-    const std::string space = graph.text(at, "space", "object");
+    const bool view = at.node.category == "viewdirection";
+    const std::string space = graph.text(at, "space", view ? "world" : "object");
     if (space != "world") {
         graph.damage(at, "space is '" + space + "', only 'world' is here");
         return std::nullopt;
+    }
+    if (view) {
+        out.rgb = graph.emit(NodeOp::viewdirection, {}, at.node.loc);
+        return out;
     }
     out.kind = at.node.category == "normal" ? Kind::surface_normal : Kind::surface_tangent;
     const NodeOp op = at.node.category == "normal" ? NodeOp::normal : NodeOp::tangent;
@@ -229,10 +242,11 @@ struct Special {
     std::string_view category;
     std::optional<MtlxValue> (*read)(MtlxGraph&, const At&);
 };
-constexpr std::array<Special, 8> kSpecial{{{"constant", read_constant},
+constexpr std::array<Special, 9> kSpecial{{{"constant", read_constant},
                                            {"position", read_position},
                                            {"normal", read_direction},
                                            {"tangent", read_direction},
+                                           {"viewdirection", read_direction},
                                            {"image", read_mtlx_image},
                                            {"tiledimage", read_mtlx_image},
                                            {"triplanarprojection", read_mtlx_triplanar},

@@ -3,64 +3,17 @@
 #include <algorithm>
 
 #include "renderer/core/nearest_name.h"
+#include "renderer/io/mtlx_rewrite.h"
 
 namespace tessera {
 namespace {
 
 using At = MtlxGraph::NodeAt;
 using Result = std::optional<MtlxValue>;
-
-/// One node being rewritten.
-struct Rewrite {
-    MtlxGraph& graph;
-    const At& at;
-    bool good = true;
-
-    /// An input, or what it is by default; of the node's type or a number.
-    MtlxValue in(std::string_view name, float otherwise = 0) {
-        if (const MtlxElement* element = at.node.child(name)) {
-            if (const Result value = graph.value_of(*element, at.scope)) return *value;
-            good = false;
-        }
-        return {.type = at.type,
-                .rgb = node_constant(otherwise),
-                .fourth = node_constant(otherwise),
-                .source = &at.node};
-    }
-    MtlxValue matching(std::string_view name, float otherwise = 0) {
-        MtlxValue value = in(name, otherwise);
-        if (value.type == at.type || is_number(value.type)) return value;
-        mismatch(name, value);
-        return value;
-    }
-    void mismatch(std::string_view name, const MtlxValue& value) {
-        graph.damage(at, std::string(name) + " is of type " + std::string(name_of(value.type)) +
-                             ", which does not go there");
-        good = false;
-    }
-    NodeValue emit(NodeOp op, std::initializer_list<NodeValue> inputs) {
-        return graph.emit(op, inputs, at.node.loc);
-    }
-    MtlxValue out(const NodeValue& rgb) {
-        return {.type = at.type, .rgb = rgb, .source = &at.node};
-    }
-    /// The same made of the first three components and of the fourth.
-    template <class Make>
-    MtlxValue each(std::initializer_list<MtlxValue> in, Make make) {
-        std::vector<NodeValue> values;
-        for (const MtlxValue& v : in) values.push_back(v.rgb);
-        MtlxValue result = out(make(values));
-        if (!has_fourth(at.type)) return result;
-        std::size_t i = 0;
-        for (const MtlxValue& v : in) values[i++] = has_fourth(v.type) ? v.fourth : v.rgb;
-        result.fourth = make(values);
-        return result;
-    }
-};
+using Rewrite = MtlxRewrite;
+const NodeValue &kOne = Rewrite::kOne, &kZero = Rewrite::kZero;
 
 using Values = std::vector<NodeValue>;
-const NodeValue kOne{{1, 1, 1}}, kZero{{0, 0, 0}};
-
 Result pass(Rewrite& r) { return r.in("in"); }
 
 bool converts(MtlxType from, MtlxType to) {
@@ -269,6 +222,13 @@ Result blend(Rewrite& r) {
             x = r.emit(NodeOp::subtract, {v[1], v[0]});
         } else if (category == "difference") {
             x = r.emit(NodeOp::absval, {r.emit(NodeOp::subtract, {v[1], v[0]})});
+        } else if (category == "dodge") {
+            x = r.emit(NodeOp::divide, {v[1], r.emit(NodeOp::invert, {v[0], kOne})});
+        } else if (category == "burn") {  // black where fg is
+            const NodeValue b = r.emit(NodeOp::invert, {v[1], kOne});
+            x = r.emit(NodeOp::invert, {r.emit(NodeOp::divide, {b, v[0]}), kOne});
+            const NodeValue there = r.emit(NodeOp::absval, {r.emit(NodeOp::sign, {v[0]})});
+            x = r.emit(NodeOp::multiply, {x, there});
         } else {  // screen
             const NodeValue f = r.emit(NodeOp::invert, {v[0], kOne});
             const NodeValue b = r.emit(NodeOp::invert, {v[1], kOne});
@@ -298,6 +258,13 @@ Result ramp4(Rewrite& r) {
         const NodeValue top = r.emit(NodeOp::ramplr, {v[0], v[1], place});
         return r.emit(NodeOp::ramptb, {top, r.emit(NodeOp::ramplr, {v[2], v[3], place}), place});
     });
+}
+
+Result masked(Rewrite& r) {
+    const MtlxValue in = r.matching("in");
+    NodeValue share = r.in("mask", r.at.node.category == "inside" ? 1 : 0).rgb;
+    if (r.at.node.category == "outside") share = r.emit(NodeOp::invert, {share, kOne});
+    return r.each({in}, [&](const Values& v) { return r.emit(NodeOp::multiply, {v[0], share}); });
 }
 
 struct Row {
@@ -334,6 +301,20 @@ const std::vector<Row>& rows() {
         {"minus", blend, {"fg", "bg", "mix"}},
         {"difference", blend, {"fg", "bg", "mix"}},
         {"screen", blend, {"fg", "bg", "mix"}},
+        {"burn", blend, {"fg", "bg", "mix"}},
+        {"dodge", blend, {"fg", "bg", "mix"}},
+        {"inside", masked, {"in", "mask"}},
+        {"outside", masked, {"in", "mask"}},
+        {"noise2d", rewrite_noise, {"amplitude", "pivot", "texcoord"}},
+        {"noise3d", rewrite_noise, {"amplitude", "pivot", "position"}},
+        {"fractal2d",
+         rewrite_noise,
+         {"amplitude", "octaves", "lacunarity", "diminish", "texcoord"}},
+        {"fractal3d",
+         rewrite_noise,
+         {"amplitude", "octaves", "lacunarity", "diminish", "position"}},
+        {"worleynoise2d", rewrite_worley, {"texcoord", "jitter", "style"}},
+        {"worleynoise3d", rewrite_worley, {"position", "jitter", "style"}},
         {"ramp4", ramp4, {"valuetl", "valuetr", "valuebl", "valuebr", "texcoord"}},
     };
     return all;

@@ -6,10 +6,12 @@
 namespace tessera {
 namespace {
 
-std::string initial_of(const NodeInputInfo& input) {
+std::string initial_of(const NodeInfo& node, const NodeInputInfo& input) {
     if (input.name == "texcoord") return "the surface's";
     if (input.name == "position") return "the object's";
-    if (input.name == "normal") return "the surface's";
+    if (input.name == "normal" || input.name == "viewdirection") return "the surface's";
+    if (node.op == NodeOp::random && input.name == "by") return "'instance'";
+    if (node.op == NodeOp::named) return input.name == "by" ? "'object'" : "''";
     const auto number = [](float v) { return params::json(static_cast<double>(v)); };
     const auto& v = input.initial;
     const bool one = input.type == NodeType::scalar || (v[0] == v[1] && v[1] == v[2]);
@@ -32,11 +34,14 @@ std::string nodes_markdown() {
         "| node | gives | inputs (default) | what it does |\n|---|---|---|---|\n";
     for (const NodeInfo& node : kNodes) {
         std::string outputs(name_of(node.output));
-        for (const NodeOutputInfo& o : node.outputs()) outputs += ", `" + std::string(o.name) + "`";
+        for (const NodeOutputInfo& o : node.outputs()) {
+            outputs += ", `" + std::string(o.name) + "`";
+            if (o.type != NodeType::scalar) outputs += " (" + std::string(name_of(o.type)) + ")";
+        }
         std::string inputs;
         for (const NodeInputInfo& i : node.inputs())
-            inputs +=
-                (inputs.empty() ? "`" : ", `") + std::string(i.name) + "` (" + initial_of(i) + ")";
+            inputs += (inputs.empty() ? "`" : ", `") + std::string(i.name) + "` (" +
+                      initial_of(node, i) + ")";
         text += "| `" + std::string(node.name) + "` | " + outputs + " | " + inputs + " | " +
                 std::string(node.help) + " |\n";
     }

@@ -1,6 +1,7 @@
 #include "renderer/io/scene_environment.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <optional>
 #include <tuple>
@@ -106,6 +107,14 @@ const KeySet<SkyEntry>& sky_rows() {
     return keys;
 }
 
+bool is_date(int year, int month, int day) {
+    const std::chrono::year_month_day date{std::chrono::year(year),
+                                           std::chrono::month(static_cast<unsigned>(month)),
+                                           std::chrono::day(static_cast<unsigned>(day))};
+    return date.ok();
+}
+
+/// Nothing if it is no time at all; with day 0 if there is no such day.
 std::optional<SkyDesc::PlaceAndTime> parse_time(const std::string& text) {
     SkyDesc::PlaceAndTime t;
     int hour = 0, minute = 0, second = 0, used = 0;
@@ -119,6 +128,7 @@ std::optional<SkyDesc::PlaceAndTime> parse_time(const std::string& text) {
                       t.month >= 1 && t.month <= 12 && t.day >= 1 && t.day <= 31 && hour >= 0 &&
                       hour < 24 && minute >= 0 && minute < 60 && second >= 0 && second < 61;
     if (!good) return std::nullopt;
+    if (!is_date(t.year, t.month, t.day)) t.day = 0;
     t.hour = hour + minute / 60.0 + second / 3600.0;
     return t;
 }
@@ -135,9 +145,8 @@ std::string find_image(const std::string& key, const std::string& file, const Va
         return {};
     }
     if (found.path.empty())
-        at.problems.error(written.loc,
-                          at.subject + ": " + key + " '" + files.name + "' " +
-                              (files.missing_frame.empty() ? found.reason : files.missing_frame));
+        at.problems.error(written.loc, at.subject + ": " + key + " '" + files.name + "' " +
+                                           (files.missing.empty() ? found.reason : files.missing));
     if (!found.note.empty())
         at.problems.note(written.loc, at.subject + ": " + key + " " + found.note);
     return found.path;
@@ -236,6 +245,9 @@ void read_sky(const Value& table, SceneReader& reader) {
         if (!entry.sky.when)
             at.problems.error(time->loc, "sky: time is '" + entry.time +
                                              "', must be like \"2026-06-21T14:30Z\" (UTC)");
+        else if (entry.sky.when->day == 0)
+            at.problems.error(time->loc,
+                              "sky: time is '" + entry.time + "', a day that there is not");
         else if (!place)
             at.problems.error(time->loc, "sky: time needs latitude_deg and longitude_deg");
         if (entry.sky.when) {

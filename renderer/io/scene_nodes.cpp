@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "renderer/core/murmur3.h"
 #include "renderer/core/nearest_name.h"
 #include "renderer/io/params.h"
 #include "renderer/io/scene_textures.h"
@@ -23,6 +24,19 @@ bool fits(NodeType from, NodeType to) {
     if (to == NodeType::any || from == NodeType::scalar || from == to) return true;
     const auto triple = [](NodeType t) { return t == NodeType::color || t == NodeType::vector3; };
     return triple(from) && (triple(to) || to == NodeType::vector2);
+}
+
+// Whether values of two kinds can be told apart no more than numbers stand beside either.
+bool joins(NodeType a, NodeType b) {
+    const auto pair = [](NodeType t) { return t == NodeType::vector2; };
+    const auto open = [](NodeType t) { return t == NodeType::scalar || t == NodeType::any; };
+    return open(a) || open(b) || pair(a) == pair(b);
+}
+
+// Inputs that are written as words.
+bool takes_word(NodeOp op, std::string_view input) {
+    return (op == NodeOp::layer && input == "blend") || op == NodeOp::named ||
+           (op == NodeOp::random && input == "by");
 }
 
 NodeDesc make(NodeOp op, const SourceLoc& loc) {
@@ -86,12 +100,15 @@ std::optional<NodeValue> NodeReader::read_plain(const Value& value, NodeType wan
     const bool number = std::holds_alternative<double>(value.data) ||
                         std::holds_alternative<std::int64_t>(value.data);
     const int takes = wanted == NodeType::scalar ? 1 : count;
-    const bool long_enough = list && takes > 1 && value.list()->size() == std::size_t(takes);
+    const std::size_t size = list ? value.list()->size() : 0;
+    const bool pair = wanted == NodeType::any && size == 2;
+    const bool long_enough = takes > 1 && (size == std::size_t(takes) || pair);
     if (!number && !long_enough) {
         report_misfit(value, key, describe({.kind = Form::Kind::input, .count = takes}), at);
         return std::nullopt;
     }
-    Key row{key, {.kind = Form::Kind::numbers, .count = count, .or_one = true}, "", nullptr};
+    Key row{
+        key, {.kind = Form::Kind::numbers, .count = pair ? 2 : count, .or_one = true}, "", nullptr};
     if (!list) row.form = {.kind = Form::Kind::number};
     const auto plain = plain_value(value, row, at);
     if (!plain) return std::nullopt;
@@ -193,22 +210,8 @@ std::optional<int> NodeReader::read_node(const Value& table, NodeType wanted,
             good = false;
             continue;
         }
-        if (info.op == NodeOp::layer && key == "blend" && value.text()) {
-            const auto& modes = blend_modes();
-            const auto mode = std::find(modes.begin(), modes.end(), *value.text());
-            if (mode == modes.end()) {
-                at.problems.error(value.loc, at.subject + ": there is no blend mode '" +
-                                                 *value.text() + "'" +
-                                                 did_you_mean(*value.text(), modes));
-                good = false;
-                continue;
-            }
-            NodeValue number;
-            number.value.fill(static_cast<float>(mode - modes.begin()));
-            give(node, static_cast<std::size_t>(input - inputs.begin()), number);
-            continue;
-        }
-        const auto given = read(value, input->type, key, at);
+        const auto given = takes_word(info.op, key) ? read_word(value, info.op, key, at)
+                                                    : read(value, input->type, key, at);
         good &= given.has_value();
         if (!given) continue;
         give(node, static_cast<std::size_t>(input - inputs.begin()), *given);
@@ -216,13 +219,58 @@ std::optional<int> NodeReader::read_node(const Value& table, NodeType wanted,
         NodeType own = value.list()
                            ? (value.list()->size() == 2 ? NodeType::vector2 : NodeType::color)
                            : NodeType::scalar;
-        if (given->node >= 0) own = given->output > 0 ? NodeType::scalar : types_.at(given->node);
+        if (given->node >= 0) own = type_of(*given);
+        if (!joins(widest, own)) {
+            at.problems.error(value.loc, at.subject + ": node '" + name + "': " + key + " is a " +
+                                             std::string(name_of(own)) + ", beside a " +
+                                             std::string(name_of(widest)) +
+                                             " (see 'extract', "
+                                             "'luminance', 'combine3')");
+            good = false;
+        }
         if (own != NodeType::scalar) widest = own;
+    }
+    if (info.op == NodeOp::named && !node.given[0]) {
+        at.problems.error(table.loc, at.subject + ": node 'named': name is missing");
+        good = false;
     }
     if (!good) return std::nullopt;
     const int at_index = push(std::move(node));
     types_[at_index] = info.output == NodeType::any ? widest : info.output;
     return at_index;
+}
+
+std::optional<NodeValue> NodeReader::read_word(const Value& value, NodeOp op,
+                                               const std::string& key, const ReadContext& at) {
+    static const std::vector<std::string> kinds{"instance", "object", "material"};
+    if (!value.text() && op != NodeOp::named) return read(value, NodeType::scalar, key, at);
+    if (!value.text()) {
+        report_misfit(value, key, "a name in quotes", at);
+        return std::nullopt;
+    }
+    if (key == "name") {
+        // A hash in halves, which floats hold exactly.
+        const std::uint32_t id = cryptomatte_id(*value.text());
+        return NodeValue{{static_cast<float>(id & 0xffffu), static_cast<float>(id >> 16), 0.0f}};
+    }
+    const auto& words = op == NodeOp::layer ? blend_modes() : kinds;
+    const auto found = std::find(words.begin(), words.end(), *value.text());
+    if (found == words.end()) {
+        at.problems.error(value.loc, at.subject + ": there is no " +
+                                         (op == NodeOp::layer ? "blend mode '" : "kind of name '") +
+                                         *value.text() + "'" + did_you_mean(*value.text(), words));
+        return std::nullopt;
+    }
+    NodeValue number;
+    number.value.fill(static_cast<float>(found - words.begin()));
+    return number;
+}
+
+NodeType NodeReader::type_of(const NodeValue& value) const {
+    const auto own = static_cast<std::size_t>(value.node);
+    if (value.output == 0) return types_.at(value.node);
+    const NodeInfo& info = info_of(material_.nodes[own]);
+    return info.outputs()[static_cast<std::size_t>(value.output - 1)].type;
 }
 
 bool NodeReader::read_image(const Value& table, NodeType wanted, NodeDesc& node,
@@ -260,7 +308,7 @@ std::optional<NodeValue> NodeReader::output_of(int node, const Value& table, Nod
         }
         if (found != outputs.end()) {
             out.output = static_cast<int>(found - outputs.begin()) + 1;
-            type = NodeType::scalar;
+            type = found->type;
         }
     }
     // An image gives a number where one is wanted: its red.
@@ -414,7 +462,7 @@ std::optional<NodeValue> NodeReader::read_normal(const Value& value, const std::
             at.problems.error(value.loc, at.subject + ": " + key + " takes nodes, no constants");
             return std::nullopt;
         }
-        if (node && (node->output > 0 || types_.at(node->node) == NodeType::scalar)) {
+        if (node && type_of(*node) == NodeType::scalar) {
             at.problems.error(value.loc, at.subject + ": " + key +
                                              " takes a vector, the node gives a number (a height "
                                              "is for 'bump')");

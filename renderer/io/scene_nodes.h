@@ -51,6 +51,9 @@ private:
     std::optional<NodeValue> read_layers(const Value& table, NodeType wanted,
                                          const ReadContext& at);
     std::optional<int> read_node(const Value& table, NodeType wanted, const ReadContext& at);
+    std::optional<NodeValue> read_word(const Value& value, NodeOp op, const std::string& key,
+                                       const ReadContext& at);
+    NodeType type_of(const NodeValue& value) const;
     bool read_image(const Value& table, NodeType wanted, NodeDesc& node, const ReadContext& at);
     std::optional<NodeValue> output_of(int node, const Value& table, NodeType wanted,
                                        const ReadContext& at);

@@ -92,9 +92,8 @@ int add_texture(const Value& table, const TextureEntry& entry, const ReadContext
         return -1;
     }
     if (!found.note.empty()) at.problems.note(loc, at.subject + ": texture " + found.note);
-    if (!files.missing_frame.empty())
-        at.problems.damage(loc,
-                           at.subject + ": texture '" + files.name + "' " + files.missing_frame);
+    if (!files.missing.empty())
+        at.problems.damage(loc, at.subject + ": texture '" + files.name + "' " + files.missing);
     TextureDesc texture;
     texture.file = found.path.empty() ? reader.folder_of(loc) + "/" + files.name : found.path;
     texture.tiles = files.tiles;

@@ -221,10 +221,18 @@ TextureFiles find_texture_files(const AssetRules& assets, const std::string& wri
                 first.substr(0, slash) + name.substr(cut == std::string::npos ? 0 : cut + 1);
         }
     }
-    if (!counted || !out.found.path.empty() || out.found.refused) return out;
+    if (!out.found.path.empty() || out.found.refused) return out;
+    if (!counted) {
+        if (tile)
+            out.missing = "has no tiles (looked for '" +
+                          with(name, *tile, tile->udim ? "1001" : "u1_v1") + "', '" +
+                          with(name, *tile, tile->udim ? "1002" : "u2_v1") + "', ... in " +
+                          base_dir + ")";
+        return out;
+    }
     const std::string there = ranges_of(frames_there(assets, pattern, *counted, base_dir));
-    out.missing_frame = there.empty() ? "is missing, and so is every other frame"
-                                      : "is missing (there are frames " + there + ")";
+    out.missing = there.empty() ? "is missing, and so is every other frame"
+                                : "is missing (there are frames " + there + ")";
     return out;
 }
 

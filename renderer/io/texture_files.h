@@ -17,7 +17,7 @@ struct TextureFiles {
     AssetPath found;   // as of AssetRules::find; path is a set's pattern when there are tiles
     std::string name;  // as written, the frame put in
     std::vector<TextureTile> tiles;
-    std::string missing_frame;  // "is missing (there are frames 1-4, 7)"; empty: all is well
+    std::string missing;  // of a sequence or set: what was looked for; empty: all is well
 };
 
 /// name as written in a file in base_dir; `frame` is the sequence's own, its offset added.

@@ -42,7 +42,10 @@ public:
         choose_passes();
         place_origin();
         if (any_subdivided(desc_, instances_)) subdivide();
-        if (wants_name_ids(scene_->passes_)) names_.emplace(desc_);
+        const auto goes_by_names = [](const MaterialDesc& m) { return wants_name_ids(m); };
+        if (wants_name_ids(scene_->passes_) ||
+            std::any_of(desc_.materials.begin(), desc_.materials.end(), goes_by_names))
+            names_.emplace(desc_);
         place_shapes();
         make_lights();
         if (desc_.camera.projection != Projection::perspective && desc_.camera.aperture_radius > 0)
@@ -516,7 +519,7 @@ private:
               fmt::format("nothing reads them ({} bytes)", bake_report_.dropped_uvs));
         leave(bake_report_.dropped_colors > 0, "vertex colours",
               fmt::format("nothing reads them ({} bytes)", bake_report_.dropped_colors));
-        leave(!scene_->name_ids_, "names of things", "no pass asks for them");
+        leave(!scene_->name_ids_, "names of things", "no pass and no node asks for them");
         leave(!f.instances, "instance transforms",
               "every shape stands once and was moved into place");
         leave(!f.lens, "lens", "the aperture is zero");

@@ -130,7 +130,8 @@ void NameCollector::add_placement(const FlatInstance& instance, const Placement&
         placed.kind == PlacedKind::mesh
             ? mesh_objects_[placed.shape]
             : add_object(shape_name(desc_, {instance.kind, instance.index}));
-    out_.placements_.push_back({assets_[instance.outermost], object});
+    const std::uint32_t asset = assets_[instance.outermost];
+    out_.placements_.push_back({asset, object, copies_[asset]++});
 }
 
 void NameCollector::add_light_bodies() {
@@ -142,7 +143,7 @@ void NameCollector::add_light_bodies() {
         const std::string name = first_named(light.name, "light");
         const std::uint32_t object = add_object(name);
         if (std::holds_alternative<QuadLightDesc>(light.shape)) mesh_objects_.push_back(object);
-        out_.placements_.push_back({names(NameKind::asset).of(name), object});
+        out_.placements_.push_back({names(NameKind::asset).of(name), object, 0});
     }
 }
 

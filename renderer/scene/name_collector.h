@@ -43,8 +43,9 @@ private:
     const SceneDesc& desc_;
     NameIds out_;  // with indices into names_ for keys until the end
     std::array<Names, kNameKinds> names_;
-    std::vector<std::uint32_t> mesh_objects_;  // per mesh: its first in objects_
-    std::vector<std::uint32_t> assets_;        // per described instance
+    std::vector<std::uint32_t> mesh_objects_;        // per mesh: its first in objects_
+    std::vector<std::uint32_t> assets_;              // per described instance
+    std::map<std::uint32_t, std::uint32_t> copies_;  // per asset
 };
 
 }  // namespace tessera

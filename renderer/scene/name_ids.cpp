@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "renderer/api/node_table.h"
+
 namespace tessera {
 
 bool wants_name_ids(const Passes& passes) {
@@ -16,6 +18,13 @@ bool wants_name_ids(const Passes& passes) {
             default:
                 return false;
         }
+    });
+}
+
+bool wants_name_ids(const MaterialDesc& material) {
+    return std::any_of(material.nodes.begin(), material.nodes.end(), [](const NodeDesc& node) {
+        const NodeOp op = kNodes[static_cast<std::size_t>(node.type)].op;
+        return op == NodeOp::random || op == NodeOp::named;
     });
 }
 

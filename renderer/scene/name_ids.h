@@ -1,12 +1,13 @@
 #pragma once
 // What the things in a scene are called, and from a hit to its names in a look-up or two. Built
-// only for pictures that hold them.
+// only for pictures that hold them and materials that go by them.
 
 #include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "renderer/api/scene_desc.h"
 #include "renderer/core/surface_point.h"
 #include "renderer/film/pass.h"
 #include "renderer/geometry/shapes.h"
@@ -27,8 +28,9 @@ struct NameList {
 /// Per kind: an index into NameList::ids. The larger the surface of a name, the smaller its key.
 using NameKeys = std::array<std::uint32_t, kNameKinds>;
 
-/// Whether a pass asks for names.
+/// Whether a pass asks for names, or a node of a material.
 bool wants_name_ids(const Passes& passes);
+bool wants_name_ids(const MaterialDesc& material);
 
 class NameIds {
 public:
@@ -42,6 +44,13 @@ public:
         }
         return {objects_[names.first_object + slot], materials_[s.material + 1], names.asset};
     }
+    std::uint32_t id(NameKind kind, const NameKeys& keys) const noexcept {
+        return list(kind).ids[keys[static_cast<std::size_t>(kind)]];
+    }
+    /// Which of all the placements that an instance's name stands for, in their order.
+    std::uint32_t copy(const SurfacePoint& s) const noexcept {
+        return placements_[s.placement].copy;
+    }
     const NameList& list(NameKind kind) const noexcept {
         return lists_[static_cast<std::size_t>(kind)];
     }
@@ -50,7 +59,7 @@ public:
 private:
     friend class NameCollector;
     struct Placed {
-        std::uint32_t asset = 0, first_object = 0;
+        std::uint32_t asset = 0, first_object = 0, copy = 0;
     };
     std::vector<Placed> placements_;
     std::vector<std::uint32_t> objects_;    // runs, by slots of Mesh::face_object

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "renderer/core/sampler.h"
 #include "renderer/scene/scene.h"
 
 namespace tessera {
@@ -21,7 +22,14 @@ inline void place_input(const Scene& scene, const SurfacePoint& s, ShadeInput& i
     in.object_scale = placed.object_scale;
     in.p_world = Vec3f(Vec3d(s.p) + scene.origin());
     orient_input(s, in);
-    in.instance = s.placement;
+    if (scene.name_ids()) {
+        const NameIds& names = *scene.name_ids();
+        const NameKeys keys = names.keys(scene.geometry(), s);
+        in.object_name = names.id(NameKind::object, keys);
+        in.material_name = names.id(NameKind::material, keys);
+        in.instance_name = names.id(NameKind::asset, keys);
+        in.instance = hash_combine(in.instance_name, names.copy(s));
+    }
     in.to_object = &placed.to_object;
     if (placed.kind == PlacedKind::mesh)
         in.creases = &scene.geometry().meshes[placed.shape].creases;
@@ -31,6 +39,7 @@ inline void place_input(const Scene& scene, const SurfacePoint& s, ShadeInput& i
 inline void look_along(Vec3f d, const SurfacePoint& s, ShadeInput& in) {
     in.front = dot(s.ng, d) <= 0.0f;
     in.n = in.front ? s.ns : -s.ns;
+    in.view = normalize(d);
     in.facing = std::fabs(dot(s.ns, d)) / length(d);
 }
 
@@ -45,6 +54,7 @@ inline Color emitter_radiance(const Scene& scene, std::int32_t material, std::ui
         s.p = p;
         s.ng = s.ns = n;
         s.placement = placement;
+        s.material = material;
         place_input(scene, s, in);
         look_along(d, s, in);
     }

@@ -116,10 +116,116 @@ TEST_CASE("mtlx graph: nodes the table lacks come to what the specification says
              "value='0.1,0.2,0.3'/><input "
              "name='channels' type='string' value='b'/></swizzle>",
              0.3f},
+            {"<dodge name='n' type='float'><input name='fg' type='float' value='0.5'/><input "
+             "name='bg' type='float' value='0.2'/></dodge>",
+             0.4f},
+            {"<burn name='n' type='float'><input name='fg' type='float' value='0.5'/><input "
+             "name='bg' type='float' value='0.8'/></burn>",
+             0.6f},
+            {"<burn name='n' type='float'><input name='fg' type='float' value='0'/><input "
+             "name='bg' type='float' value='0.8'/></burn>",
+             0},
+            {"<outside name='n' type='float'><input name='in' type='float' value='0.8'/><input "
+             "name='mask' type='float' value='0.25'/></outside>",
+             0.6f},
+            {"<inside name='n' type='float'><input name='in' type='float' value='0.8'/><input "
+             "name='mask' type='float' value='0.25'/></inside>",
+             0.2f},
+            {"<acos name='n' type='float'><input name='in' type='float' value='0.5'/></acos>",
+             1.0471976f},
+            {"<asin name='n' type='float'><input name='in' type='float' value='0.5'/></asin>",
+             0.5235988f},
+            {"<atan2 name='n' type='float'><input name='iny' type='float' value='1'/></atan2>",
+             0.7853982f},
+            {"<switch name='n' type='float'><input name='which' type='integer' value='9'/><input "
+             "name='in10' type='float' value='0.7'/></switch>",
+             0.7f},
+            {"<switch name='n' type='float'><input name='which' type='float' value='5.5'/><input "
+             "name='in6' type='float' value='0.6'/></switch>",
+             0.6f},
         }) {
         CAPTURE(c.nodes);
         CHECK(number_of(c.nodes) == doctest::Approx(c.value).epsilon(1e-5));
     }
+}
+
+TEST_CASE("mtlx graph: noise of several components is that of one, and others beside it") {
+    ShadeInput in;
+    in.p_object = {0.3f, 0.7f, 0.2f};
+    in.uv = {0.3f, 0.7f};
+    for (const char* name : {"noise2d", "noise3d", "fractal3d"}) {
+        CAPTURE(name);
+        const auto node = [&](const char* type, const std::string& inputs) {
+            return std::string("<") + name + " name='n' type='" + type + "'>" + inputs + "</" +
+                   name + ">";
+        };
+        const float one = number_of(node("float", input("amplitude", "float", "value='0.5'")), in);
+        const Vec3f three =
+            color_of(node("color3", input("amplitude", "vector3", "value='0.5,1,2'")), in);
+        CHECK(three.x == doctest::Approx(one).epsilon(1e-5));
+        const Vec3f even = color_of(node("color3", input("amplitude", "float", "value='0.5'")), in);
+        CHECK(near(three, even * Vec3f{1, 2, 4}));
+        CHECK(even.x != even.y);
+        CHECK(even.y != even.z);
+        if (std::string(name) == "fractal3d") continue;
+        const Vec3f about = color_of(node("color3", input("amplitude", "float", "value='0.5'") +
+                                                        input("pivot", "float", "value='0.25'")),
+                                     in);
+        CHECK(near(about, even + Vec3f(0.25f)));
+    }
+}
+
+TEST_CASE("mtlx graph: worley noise of several components holds the distances in their order") {
+    ShadeInput in;
+    in.p_object = {0.3f, 0.7f, 0.2f};
+    in.uv = {0.3f, 0.7f};
+    for (const std::string name : {"worleynoise2d", "worleynoise3d"}) {
+        CAPTURE(name);
+        const float f1 = number_of("<" + name + " name='n' type='float'/>", in);
+        const Vec3f f = color_of("<" + name +
+                                     " name='w' type='vector3'/><convert name='n' "
+                                     "type='color3'>" +
+                                     input("in", "vector3", "nodename='w'") + "</convert>",
+                                 in);
+        CHECK(f.x == f1);
+        CHECK(f.x < f.y);
+        CHECK(f.y < f.z);
+        const std::string pair = "<" + name +
+                                 " name='w' type='vector2'/><extract name='n' "
+                                 "type='float'>" +
+                                 input("in", "vector2", "nodename='w'") +
+                                 input("index", "integer", "value='1'") + "</extract>";
+        CHECK(number_of(pair, in) == f.y);
+        const float cell = number_of("<" + name + " name='n' type='float'>" +
+                                         input("style", "integer", "value='1'") + "</" + name + ">",
+                                     in);
+        CHECK(cell >= 0);
+        CHECK(cell < 1);
+        CHECK(cell != f1);
+    }
+}
+
+TEST_CASE("mtlx graph: how a surface faces the viewer takes its inputs") {
+    ShadeInput in;
+    in.n = {0, 0, 1};
+    in.view = {0.6f, 0, -0.8f};
+    in.facing = 0.8f;
+    const auto ratio = [&](const std::string& inputs) {
+        return number_of("<facingratio name='n' type='float'>" + inputs + "</facingratio>", in);
+    };
+    CHECK(ratio("") == doctest::Approx(0.8f));
+    CHECK(ratio(input("invert", "boolean", "value='true'")) == doctest::Approx(0.2f));
+    CHECK(ratio(input("normal", "vector3", "value='-1, 0, 0'")) == doctest::Approx(0.6f));
+    CHECK(ratio(input("viewdirection", "vector3", "value='0, 3, 4'")) == doctest::Approx(0.8f));
+    CHECK(ratio(input("viewdirection", "vector3", "value='0, 3, 4'") +
+                input("faceforward", "boolean", "value='false'") +
+                input("invert", "boolean", "value='true'")) == doctest::Approx(1.8f));
+    CHECK(near(color_of("<viewdirection name='v' type='vector3'/><absval name='a' type='vector3'>" +
+                            input("in", "vector3", "nodename='v'") +
+                            "</absval><convert name='n' type='color3'>" +
+                            input("in", "vector3", "nodename='a'") + "</convert>",
+                        in),
+               {0.6f, 0, 0.8f}));
 }
 
 TEST_CASE("mtlx graph: channels are taken apart and put together") {
@@ -313,8 +419,18 @@ TEST_CASE("mtlx graph: what does not exist or does not fit is named with its pla
                  input("in1", "color3", "nodename='f'") + "</add>",
              "a.mtlx:9:29: input 'in1': is of type color3, what it is given of type float (see "
              "'convert', 'extract')"},
-            {"<noise2d name='n' type='color3'/>",
-             "a.mtlx:8:1: noise2d 'n': does not come in type 'color3'"},
+            {"<dotproduct name='n' type='color3'/>",
+             "a.mtlx:8:1: dotproduct 'n': does not come in type 'color3'"},
+            {"<worleynoise3d name='n' type='color3'/>",
+             "a.mtlx:8:1: worleynoise3d 'n': does not come in that type"},
+            {"<noise3d name='n' type='color3'>" + input("amplitude", "vector2", "value='1,1'") +
+                 "</noise3d>",
+             "a.mtlx:8:1: noise3d 'n': amplitude is of type vector2, which does not go there"},
+            {"<viewdirection name='v' type='vector3'>" +
+                 input("space", "string", "value='object'") +
+                 "</viewdirection><convert name='n' type='color3'>" +
+                 input("in", "vector3", "nodename='v'") + "</convert>",
+             "a.mtlx:8:1: viewdirection 'v': space is 'object', only 'world' is here"},
             {"<texcoord name='t' type='vector2'>\n" + input("index", "integer", "value='1'") +
                  "</texcoord><checkerboard name='n' type='color3'>" +
                  input("texcoord", "vector2", "nodename='t'") + "</checkerboard>",

@@ -138,6 +138,16 @@ TEST_CASE("sky: what contradicts itself is an error at its place") {
           std::string::npos);
     CHECK(folder.failure("[sky]\ntime = '2026-06-21T12:00Z'").find("needs latitude_deg") !=
           std::string::npos);
+    for (const char* day : {"2026-02-30", "2026-06-31", "2025-02-29", "1900-02-29"}) {
+        const std::string sky =
+            std::string("[sky]\nlatitude_deg = 1\nlongitude_deg = 1\ntime = '") + day +
+            "T12:00Z'\n";
+        CHECK(folder.failure(sky).find("s.toml:5:1: sky: time is '" + std::string(day) +
+                                       "T12:00Z', a day that there is not") != std::string::npos);
+    }
+    const char* const leap =
+        "[sky]\nlatitude_deg = 1\nlongitude_deg = 1\ntime = '2024-02-29T12:00Z'\n";
+    CHECK(folder.load(leap).sky->when->day == 29);
     CHECK(folder.failure("[sky]\nlatitude_deg = 3").find("need a time") != std::string::npos);
     CHECK(folder
               .failure("[sky]\ntime = '2026-06-21T12:00Z'\nlatitude_deg = 1\nlongitude_deg = 1\n"

@@ -26,7 +26,7 @@ TEST_CASE("sequences: each way to write a frame finds its file") {
     const AssetRules rules(folder.path(), false);
     const auto found = [&](const std::string& name, int frame) {
         const TextureFiles files = find_texture_files(rules, name, folder.path(), frame);
-        CHECK(files.missing_frame.empty() == !files.found.path.empty());
+        CHECK(files.missing.empty() == !files.found.path.empty());
         return stem(files.found.path);
     };
     CHECK(found("a.####.png", 7) == "a.0007.png");
@@ -52,8 +52,8 @@ TEST_CASE("sequences: a missing frame is told with the frames that are there") {
     const TextureFiles files = find_texture_files(rules, "a.<frame>.png", folder.path(), 5);
     CHECK(files.found.path.empty());
     CHECK(files.name == "a.5.png");
-    CHECK(files.missing_frame == "is missing (there are frames 1-3, 7, 9-10)");
-    CHECK(find_texture_files(rules, "z.####.png", folder.path(), 5).missing_frame ==
+    CHECK(files.missing == "is missing (there are frames 1-3, 7, 9-10)");
+    CHECK(find_texture_files(rules, "z.####.png", folder.path(), 5).missing ==
           "is missing, and so is every other frame");
 }
 
@@ -67,7 +67,7 @@ TEST_CASE("sequences: a file whose name is what is written comes first") {
         CHECK(stem(find_texture_files(rules, name, folder.path(), 1).found.path) == name);
     // What is no token is left alone: a missing file, not a missing frame.
     for (const char* name : {"a.%s.png", "a.<thing>.png", "a.%0444444d.png", "a.<F99>.png", "a.<"})
-        CHECK(find_texture_files(rules, name, folder.path(), 1).missing_frame.empty());
+        CHECK(find_texture_files(rules, name, folder.path(), 1).missing.empty());
 }
 
 TEST_CASE("tiles: UDIM and UVTILE sets are found, in the order of their rows") {
@@ -89,7 +89,12 @@ TEST_CASE("tiles: UDIM and UVTILE sets are found, in the order of their rows") {
     CHECK(stem(a.found.path) == "a.<UDIM>.png");
     CHECK(places(find_texture_files(rules, "b_<UVTILE>.png", folder.path(), 1)) ==
           "1,0=b_u2_v1.png 0,2=b_u1_v3.png ");
-    CHECK(find_texture_files(rules, "none.<UDIM>.png", folder.path(), 1).tiles.empty());
+    const TextureFiles none = find_texture_files(rules, "none.<UDIM>.png", folder.path(), 1);
+    CHECK(none.tiles.empty());
+    CHECK(none.missing == "has no tiles (looked for 'none.1001.png', 'none.1002.png', ... in " +
+                              folder.path() + ")");
+    CHECK(find_texture_files(rules, "n_<UVTILE>.png", folder.path(), 1)
+              .missing.find("'n_u1_v1.png', 'n_u2_v1.png', ...") != std::string::npos);
 }
 
 TEST_CASE("tiles: a frame of a set is found, or told missing") {
@@ -98,7 +103,7 @@ TEST_CASE("tiles: a frame of a set is found, or told missing") {
         touch(folder / name);
     const AssetRules rules(folder.path(), false);
     CHECK(find_texture_files(rules, "a.<UDIM>.####.png", folder.path(), 3).tiles.size() == 2);
-    CHECK(find_texture_files(rules, "a.<UDIM>.####.png", folder.path(), 4).missing_frame ==
+    CHECK(find_texture_files(rules, "a.<UDIM>.####.png", folder.path(), 4).missing ==
           "is missing (there are frames 3, 5)");
 }
 
