@@ -264,7 +264,9 @@ void ShaderProgram::compile_emission() {
     facts_.emissive = !zero(luminance);
     facts_.emission_by_hit =
         emission_graph_.reads_attributes() || (facts_.cutout && opacity_graph_.reads_attributes());
-    facts_.emission_textured = luminance.varies() || color.varies();
+    emission_varies_ = luminance.varies() || color.varies();
+    if (!emission_varies_) constant_emission_ = bare_emission({}, nullptr);
+    facts_.emission_textured = emission_varies_;
     facts_.emission_geometry = emission_graph_.reads_geometry() ||
                                emission_graph_.reads_tangent() ||
                                emission_graph_.reads_vertex_color();
@@ -344,7 +346,7 @@ Color ShaderProgram::base_color(const ShadeInput& in, const TextureStore* store)
 
 Color ShaderProgram::emission(const ShadeInput& in, const TextureStore* store,
                               float outward) const noexcept {
-    const Color bare = bare_emission(in, store);
+    const Color bare = emission_varies_ ? bare_emission(in, store) : constant_emission_;
     if (!facts_.emission_covered) return bare;
     const auto covered = [&](const Surface& s) {
         return bare * s.covering(std::fabs(outward), outward >= 0.0f);

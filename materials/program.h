@@ -126,6 +126,8 @@ private:
     Graph relief_, opacity_graph_, emission_graph_;
     Wire normal_, coat_normal_, tangent_, coat_tangent_, bump_;
     Wire opacity_, emission_color_, emission_luminance_;
+    bool emission_varies_ = false;
+    Color constant_emission_{0.0f};
     bool varies_ = false;
     bool covering_varies_ = false;
     Medium transmission_, subsurface_;  // constant_'s
