@@ -436,19 +436,18 @@ private:
         }
     }
 
-    // The next rays. Returns the lanes whose ray has something to carry on the side it was meant
-    // for.
+    // The next rays. Returns the lanes that carry something to where it was meant to go.
     LaneMask leave_surfaces() noexcept {
-        LaneFlags leaves;
+        LaneFlags carries;
+        leaving_.find(frame_, scattered_);
         for (int i = 0; i < kLanes; ++i) {
-            const Leaving to = leave_surface(i, frame_, scattered_);
-            bsdf_pdf_[i] = pick(to.turned, 0.0f, bsdf_pdf_[i]);
-            next_o_.set(i, ray_origin(p_[i], p_error_[i], frame_.ng[i], frame_.lift[i], to.wi,
-                                      scattered_.wi[i]));
-            next_d_.set(i, to.wi);
-            leaves.is[i] = to.leaves & (max_component(throughput_[i]) > 0.0f);
+            const Vec3f wi = leaving_.wi[i], local = scattered_.wi[i];
+            bsdf_pdf_[i] = pick(leaving_.turned.is[i] != 0, 0.0f, bsdf_pdf_[i]);
+            next_o_.set(i, ray_origin(p_[i], p_error_[i], frame_.ng[i], frame_.lift[i], wi, local));
+            next_d_.set(i, wi);
+            carries.is[i] = max_component(throughput_[i]) > 0.0f;
         }
-        return leaves.mask();
+        return carries.mask() & leaving_.left.mask();
     }
 
     LaneMask play_roulette() noexcept {
@@ -588,6 +587,7 @@ private:
     float shadow_t_max_[kLanes];
     Vec3Lanes pending_;  // light that waits for its shadow ray
     LobeSamples scattered_;
+    Leaving leaving_;
     Vec3Lanes next_o_, next_d_;
     HitPacket packet_;
 };

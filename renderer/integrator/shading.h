@@ -191,17 +191,27 @@ inline Vec3f reflect_at(Vec3f wi, Vec3f guard) { return wi - guard * (2.0f * dot
 /// within glass, send to the wrong side is turned to the right one, so that it is not lost: as no
 /// light sampling could have found it.
 struct Leaving {
-    Vec3f wi;
-    bool leaves, turned;
+    Vec3Lanes wi;
+    LaneFlags turned, left;  // left: on the side that was meant
+
+    /// Which lanes' directions are to be turned; in loops that the compiler vectorises.
+    [[gnu::flatten]] void find(const FacingFrames& frames, const LobeSamples& sent) {
+        LaneFlags wrong;
+        for (int i = 0; i < kLanes; ++i) {
+            const Vec3f meant = frames.shading(i).to_world(sent.wi[i]);
+            wi.set(i, meant);
+            wrong.is[i] = !same_side(meant, sent.wi[i], frames.guard[i]);
+        }
+        constexpr auto kThrough = static_cast<std::uint32_t>(LobeClass::transmission);
+        for (int i = 0; i < kLanes; ++i) {
+            const std::uint32_t smooth = sent.pdf[i] == 0.0f, through = sent.cls[i] == kThrough;
+            turned.is[i] = wrong.is[i] & (smooth | through | frames.within.is[i]);
+            left.is[i] = turned.is[i] | (wrong.is[i] ^ 1u);
+        }
+        for (int i = 0; i < kLanes; ++i)
+            wi.set(i, pick(turned.is[i] != 0, reflect_at(wi[i], frames.guard[i]), wi[i]));
+    }
 };
-inline Leaving leave_surface(int i, const FacingFrames& frames, const LobeSamples& sent) {
-    const Vec3f local = sent.wi[i], guard = frames.guard[i];
-    const Vec3f meant = frames.shading(i).to_world(local);
-    const bool refracted = sent.cls[i] == static_cast<std::uint32_t>(LobeClass::transmission);
-    const bool turns = (sent.pdf[i] == 0.0f) | refracted | (frames.within.is[i] != 0);
-    const bool same = same_side(meant, local, guard), turned = !same & turns;
-    return {pick(turned, reflect_at(meant, guard), meant), same || turned, turned};
-}
 
 /// Where a ray along wi starts: reflected light at the surface that smooth normals pretend.
 inline Vec3f ray_origin(Vec3f p, Vec3f p_error, Vec3f ng, Vec3f lift, Vec3f wi, Vec3f wi_local) {
