@@ -322,7 +322,7 @@ private:
                 pending_.set(i, pending_[i] * transmittance(*medium, way));
             });
         }
-        if (passes_) each(lanes, [&](int i) { aim_passes(i, depth); });
+        if (passes_ && passes_->follows_light()) each(lanes, [&](int i) { aim_passes(i, depth); });
         each(lanes, [&](int i) {
             if (!traceable(shadow_o_[i], shadow_d_[i])) return invalid(InvalidCause::shadow_ray, i);
             shadow_lanes_ |= 1u << i;
@@ -399,7 +399,7 @@ private:
             });
         }
         each(shadow_lanes_ & ~blocked, [&](int i) { out_[i].radiance += pending_[i]; });
-        if (!passes_) return;
+        if (!passes_ || !passes_->follows_light()) return;
         each(shadow_lanes_ & ~blocked, [&](int i) { passes_->lit(i, pending_[i]); });
         if (depth == 0 && passes_->wants_shadow())
             each(shadow_lanes_,

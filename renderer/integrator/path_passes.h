@@ -28,6 +28,7 @@ public:
     bool wants_shadow() const noexcept { return wants_shadow_; }
     bool wants_albedos() const noexcept { return !out_.event_albedos.empty(); }
     bool wants_light() const noexcept { return !out_.light.empty(); }
+    bool follows_light() const noexcept { return wants_light() || wants_shadow_; }
 
     void start(LaneMask lanes) noexcept;
     FirstHit& first(int lane) noexcept { return out_.first[lane]; }
