@@ -239,6 +239,10 @@ void ShaderProgram::compile_relief() {
     bump_ = add(m_.bump);
     // A height that is the same everywhere is none.
     if (m_.bump.node >= 0 && bump_.op < 0) m_.bump = {0};
+    facts_.bends_normal = m_.geometry_normal.given() || m_.bump.varies();
+    facts_.bends_coat_normal = m_.geometry_coat_normal.given();
+    facts_.turns_tangent = m_.geometry_tangent.given();
+    facts_.turns_coat_tangent = m_.geometry_coat_tangent.given();
     const bool bends = bends_normal() || bends_coat_normal(),
                turns = turns_tangent() || turns_coat_tangent();
     facts_.tangent |= bends || turns;
@@ -367,8 +371,9 @@ Color ShaderProgram::bare_emission(const ShadeInput& in, const TextureStore* sto
 
 Color ShaderProgram::visible_emission(const ShadeInput& in, const TextureStore* store,
                                       float outward) const noexcept {
-    const Color c = emission(in, store, outward);
-    return facts_.cutout ? c * opacity(in, store) : c;
+    // Two ways out: a copy of what was returned would wait for its parts.
+    if (!facts_.cutout) return emission(in, store, outward);
+    return emission(in, store, outward) * opacity(in, store);
 }
 
 // Of a graph: the mean over points of its texture and object space. It only decides how often a

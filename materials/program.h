@@ -38,11 +38,13 @@ struct ProgramFacts {
     bool tangent = false;   // reads dpdu
     bool geometry = false;  // reads position, normal or instance
     bool vertex_color = false;
+    bool bends_normal = false, bends_coat_normal = false;
+    bool turns_tangent = false, turns_coat_tangent = false;
     float crease_angle_deg = kInfinity;  // of the creases that it asks for, at least
     bool creases() const noexcept { return crease_angle_deg < kInfinity; }
 };
 
-class ShaderProgram {
+class alignas(64) ShaderProgram {
 public:
     /// desc's texture indices are those of the TextureStore (see remapped).
     explicit ShaderProgram(const MaterialDesc& desc);
@@ -73,10 +75,10 @@ public:
     float opacity(const ShadeInput& in, const TextureStore* store) const noexcept;
     /// The constant that the opacity's texture is multiplied by.
     float opacity_factor() const noexcept { return m_.geometry_opacity.value; }
-    bool bends_normal() const noexcept { return m_.geometry_normal.given() || m_.bump.varies(); }
-    bool bends_coat_normal() const noexcept { return m_.geometry_coat_normal.given(); }
-    bool turns_tangent() const noexcept { return m_.geometry_tangent.given(); }
-    bool turns_coat_tangent() const noexcept { return m_.geometry_coat_tangent.given(); }
+    bool bends_normal() const noexcept { return facts_.bends_normal; }
+    bool bends_coat_normal() const noexcept { return facts_.bends_coat_normal; }
+    bool turns_tangent() const noexcept { return facts_.turns_tangent; }
+    bool turns_coat_tangent() const noexcept { return facts_.turns_coat_tangent; }
     /// Unit normals on in.n's side, in the world; in.n if the material says nothing of them.
     Vec3f normal(const ShadeInput& in, const TextureStore* store) const noexcept;
     Vec3f coat_normal(const ShadeInput& in, const TextureStore* store) const noexcept;
@@ -118,20 +120,20 @@ private:
     Vec3f mapped_normal(const NormalInput& input, const Wire& wire, const ShadeInput& in,
                         const TextureStore* store) const noexcept;
 
-    MaterialDesc m_;
+    // What every hit asks for, in one cache line; then what most do.
+    ProgramFacts facts_;
+    bool varies_ = false;
+    bool emission_varies_ = false, covering_varies_ = false;
+    Color constant_emission_{0.0f};
     Surface constant_{SurfaceParams()};  // what does not vary
+    MaterialDesc m_;
     std::vector<Varying> varying_;
     Graph graph_;
     // What is asked for apart from the surface.
     Graph relief_, opacity_graph_, emission_graph_;
     Wire normal_, coat_normal_, tangent_, coat_tangent_, bump_;
     Wire opacity_, emission_color_, emission_luminance_;
-    bool emission_varies_ = false;
-    Color constant_emission_{0.0f};
-    bool varies_ = false;
-    bool covering_varies_ = false;
-    Medium transmission_, subsurface_;  // constant_'s
-    ProgramFacts facts_;
+    Medium transmission_, subsurface_;             // constant_'s
     std::shared_ptr<const SurfaceCurves> curves_;  // shared: programs are copied into place
 };
 

@@ -21,10 +21,13 @@ void check_cpu() {
 #ifdef TESSERA_MARCH
     __builtin_cpu_init();
     constexpr std::string_view kMarch = TESSERA_MARCH;
-    if ((kMarch == "x86-64-v3" || kMarch == "x86-64-v4") &&
-        !(__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2"))) {
-        std::fputs("tessera: this build needs a CPU with AVX2 (" TESSERA_MARCH
-                   "); configure with -DTESSERA_MARCH=x86-64 for older ones\n",
+    const bool v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2");
+    const bool v4 = v3 && __builtin_cpu_supports("avx512bw") &&
+                    __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+    if ((kMarch == "x86-64-v3" && !v3) || (kMarch == "x86-64-v4" && !v4)) {
+        std::fputs("tessera: this build needs a CPU of level " TESSERA_MARCH
+                   " (v3: AVX2, v4: AVX-512); configure with -DTESSERA_MARCH=x86-64-v3 or x86-64 "
+                   "for this one\n",
                    stderr);
         std::exit(static_cast<int>(tessera::ExitCode::usage));
     }

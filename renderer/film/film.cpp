@@ -76,8 +76,11 @@ Film::Film(const PixelWindow& window, Passes passes, bool deep)
     if (std::any_of(passes_.begin(), passes_.end(), wants_nearest)) nearest_.resize(n);
     for (std::size_t p = 0; p < passes_.size(); ++p) {
         const Pass& pass = passes_[p];
-        if (how(pass.source) == How::sums) planes_[p].sums.resize(n * sums_of(pass));
-        if (how(pass.source) == How::nearest) planes_[p].nearest.resize(n * pass.channels.size());
+        planes_[p].source = pass.source;
+        planes_[p].events = pass.events;
+        planes_[p].width = static_cast<std::uint32_t>(sums_of(pass));
+        if (how(pass.source) == How::sums) planes_[p].sums.resize(n * planes_[p].width);
+        if (how(pass.source) == How::nearest) planes_[p].nearest.resize(n * planes_[p].width);
         if (how(pass.source) == How::coverage) planes_[p].coverage.emplace(n);
         light_passes_ += pass.source == PassSource::light_paths;
         event_albedos_ |= pass.source == PassSource::event_albedo;
@@ -115,17 +118,16 @@ void Film::add_passes(std::size_t i, std::uint32_t index, const PathSample& s,
         if (nearer) nearest = {f.z, index};
     }
     const Color* light = passes.light.data() + lane;
-    for (std::size_t p = 0; p < passes_.size(); ++p) {
-        const Pass& pass = passes_[p];
-        Sum* const sums = planes_[p].sums.data() + i * sums_of(pass);
-        float* const value = planes_[p].nearest.data() + i * pass.channels.size();
+    for (Plane& plane : planes_) {
+        Sum* const sums = plane.sums.data() + i * plane.width;
+        float* const value = plane.nearest.data() + i * plane.width;
         const auto count = [&](std::uint32_t number) {
-            if (number > 0) planes_[p].coverage->add(i, number - 1);
+            if (number > 0) plane.coverage->add(i, number - 1);
         };
         const auto put = [&](Vec3f v) {
             if (nearer) value[0] = v.x, value[1] = v.y, value[2] = v.z;
         };
-        switch (pass.source) {
+        switch (plane.source) {
             case PassSource::z:
             case PassSource::sample_count:
                 break;
@@ -155,7 +157,7 @@ void Film::add_passes(std::size_t i, std::uint32_t index, const PathSample& s,
                 break;
             case PassSource::event_albedo: {
                 Color sum(0.0f);
-                for (std::uint32_t m = pass.events; m != 0; m &= m - 1)
+                for (std::uint32_t m = plane.events; m != 0; m &= m - 1)
                     sum += passes.event_albedos[static_cast<std::size_t>(
                         std::countr_zero(m) * kLanes + lane)];
                 tessera::add(sums, sum);

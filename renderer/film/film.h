@@ -114,6 +114,9 @@ private:
     // One pass: sums or the nearest sample's values, channels interleaved; none where beauty's
     // counts say it all.
     struct Plane {
+        PassSource source = {};
+        std::uint32_t events = 0;  // of the pass
+        std::uint32_t width = 0;   // numbers a pixel
         std::vector<Sum> sums;
         std::vector<float> nearest;
         std::optional<IdCoverage> coverage;

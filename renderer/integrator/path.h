@@ -190,7 +190,7 @@ private:
             throughput_.set(i, throughput_[i] * passed);
             if (in.leaves_body()) return depth_[i].last ? stop(i) : void();
         }
-        shade_in_[i] = shade_input<F>(scene_, program, hit_[i], cone_width_[i], d, s);
+        make_shade_input<F>(scene_, program, hit_[i], cone_width_[i], d, s, shade_in_[i]);
         if constexpr (F.textures) shade_in_[i].seed = seeds_[i];
         if (depth == 0) note_first_hit(i, s);
         if constexpr (kMedia<F>) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <type_traits>
 
 #include "materials/surface/openpbr.h"
@@ -148,11 +149,12 @@ void push_lobes(const ShaderProgram& program, const ShadeInput& in, const Textur
     lobes.push(lane, DiffuseLobe{}, program.base_color(in, textures));
 }
 
-/// What the program reads at s; fills in s's texture frame if it reads one.
+/// What the program reads at s; fills in s's texture frame if it reads one. Made in place: a copy
+/// would wait for its own parts.
 template <Features F>
-ShadeInput shade_input(const Scene& scene, const ShaderProgram* program, const Hit& hit,
-                       float cone_width, Vec3f d, SurfacePoint& s) {
-    ShadeInput in;
+void make_shade_input(const Scene& scene, const ShaderProgram* program, const Hit& hit,
+                      float cone_width, Vec3f d, SurfacePoint& s, ShadeInput& in) {
+    new (&in) ShadeInput;
     if constexpr (F.textures || F.specular) {
         if (program && (program->facts().uv || program->facts().tangent)) {
             add_texture_frame(scene.geometry(), hit, s);
@@ -176,7 +178,6 @@ ShadeInput shade_input(const Scene& scene, const ShaderProgram* program, const H
             in.p_width = cone_width / std::max(std::sqrt(std::fabs(dot(s.ng, d))), 0.2f);
         }
     }
-    return in;
 }
 
 /// True if the shading frame and the surface agree on which side wi leaves.

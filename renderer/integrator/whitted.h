@@ -121,7 +121,8 @@ private:
         node.cone_width += node.cone_spread * dot(v.s.p - node.ray.o, node.ray.d);
         if (node.depth == 0) note_first_hit(i, hit);
         const ShaderProgram* program = v.s.material >= 0 ? &scene_.program(v.s.material) : nullptr;
-        ShadeInput in = shade_input<F>(scene_, program, hit, node.cone_width, node.ray.d, v.s);
+        ShadeInput in;
+        make_shade_input<F>(scene_, program, hit, node.cone_width, node.ray.d, v.s, in);
         if constexpr (F.textures) in.seed = seeds_[i];
         if (!program) {
             out_[i].radiance +=
