@@ -21,6 +21,7 @@ struct DeepSample {
     float z = 0;  // of the nearest camera sample
     std::array<float, 3> rgb{};
     double alpha = 0;  // share of the camera samples
+    bool operator==(const DeepSample&) const = default;
 };
 
 struct DeepImage {

@@ -22,7 +22,7 @@ namespace {
 
 struct MergeOptions {
     std::vector<std::string> parts;
-    std::string output, preview, view, crypto_manifest = "embedded";
+    std::string output, preview, deep, view, crypto_manifest = "embedded";
     OutputOptions out;
     std::optional<int> spp;
     bool partial = false, quiet = false;
@@ -117,7 +117,8 @@ bool check(const std::vector<Part>& parts, const std::vector<SampleBox>& boxes,
 }
 
 FilmFile merge(const std::vector<Part>& parts, const SampleBox& whole) {
-    FilmFile all{parts.front().header, Film(whole.window, parts.front().header.passes)};
+    const FilmHeader& first = parts.front().header;
+    FilmFile all{first, Film(whole.window, first.passes, first.deep)};
     FilmHeader& h = all.header;
     h.window = whole.window;
     h.seconds = 0, h.parts = 0;
@@ -160,6 +161,7 @@ LayeredImage picture_of(FilmFile& all) {
     image.metadata = h.metadata;
     std::vector<std::string> notes;
     add_mattes(all.film, h.ids, image.layers, notes);
+    if (all.film.deep()) note_crowds(*all.film.deep(), notes);
     for (const std::string& n : notes) log_info("note: " + n);
     return image;
 }
@@ -170,21 +172,31 @@ WriteReport write(FilmFile& all, bool complete, const MergeOptions& o, const std
     SceneDesc format;
     o.out.apply(format);
     LayeredImage image;
-    if (!film || !o.preview.empty()) image = picture_of(all);
+    if (!film || !o.preview.empty() || !o.deep.empty()) image = picture_of(all);
     describe_picture(image, all.header.scene_hash, statistics_of(all.header, complete), command,
                      format.output);
     if (!format.output.deterministic_metadata)
         image.metadata.emplace_back("tessera/parts", all.header.parts);
-    return write_picture_files(
+    WriteReport report = write_picture_files(
         image, {o.output, o.preview, o.view, format.output, o.crypto_manifest == "sidecar"});
+    if (!o.deep.empty()) {
+        DeepImage deep = all.film.deep_image();
+        deep.width = all.header.width, deep.height = all.header.height;
+        deep.working_space = all.header.working_space;
+        write_deep_file(image, deep, o.deep, write_options(format.output, 0), report);
+    }
+    return report;
 }
 
 int run_merge(const MergeOptions& o, const std::string& command) {
     set_log_level(o.quiet ? LogLevel::quiet : LogLevel::normal);
     const std::vector<OutputFile> outputs{{o.output, "--output", {".exr", kFilmExtension}},
-                                          {o.preview, "--preview", {".png", ".jpg", ".jpeg"}}};
+                                          {o.preview, "--preview", {".png", ".jpg", ".jpeg"}},
+                                          {o.deep, "--deep", {".exr"}}};
     check_outputs(outputs);
     const std::vector<Part> parts = read_parts(o);
+    if (!o.deep.empty() && !parts.front().header.deep)
+        refuse("--deep: " + parts.front().path + " keeps no depths; render parts with --deep too");
     if (!o.preview.empty()) check_view(parts.front().header.working_space, o.view);
     std::vector<SampleBox> boxes;
     for (const Part& p : parts) boxes.push_back(p.box);
@@ -215,6 +227,8 @@ void add_merge(CLI::App& app, CommandLine& line) {
         ->required()
         ->check(named);
     sub->add_option("--preview", o->preview, "Also a .png or .jpg for the eye")->check(named);
+    sub->add_option("--deep", o->deep, "Also a deep EXR, of parts that were rendered with --deep")
+        ->check(named);
     sub->add_option("--view", o->view, "OpenColorIO view of the preview (default: the config's)");
     sub->add_option("-s,--spp", o->spp, "Samples per pixel that there must be")
         ->check(CLI::Range(1, 1 << 24));

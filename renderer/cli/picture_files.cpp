@@ -39,6 +39,18 @@ WriteReport write_picture_files(LayeredImage& image, const PictureFiles& files) 
     return report;
 }
 
+void write_deep_file(const LayeredImage& image, DeepImage& deep, const std::string& path,
+                     const WriteOptions& options, WriteReport& report) {
+    // Names of mattes are left to the file that has them.
+    for (const auto& entry : image.metadata)
+        if (!entry.first.starts_with("cryptomatte/")) deep.metadata.push_back(entry);
+    const WriteReport written = write_deep_exr(deep, image.window, path, options);
+    report.bytes += written.bytes;
+    report.clamped += written.clamped;
+    report.non_finite += written.non_finite;
+    report.files.push_back(path);
+}
+
 std::string names(const std::vector<std::string>& files) {
     if (files.size() == 1) return files[0];
     return fmt::format("{} and {} more", files[0], files.size() - 1);

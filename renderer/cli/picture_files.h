@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "renderer/api/deep.h"
 #include "renderer/api/image.h"
 
 namespace tessera {
@@ -17,6 +18,10 @@ struct PictureFiles {
 
 /// Pads the picture if the format says so, and writes all. Throws Error(output).
 WriteReport write_picture_files(LayeredImage& image, const PictureFiles& files);
+
+/// Writes the depths of a picture whose header says everything by now, and adds to its report.
+void write_deep_file(const LayeredImage& image, DeepImage& deep, const std::string& path,
+                     const WriteOptions& options, WriteReport& report);
 
 /// "a.exr", "a.exr and 3 more"
 std::string names(const std::vector<std::string>& files);

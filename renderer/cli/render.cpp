@@ -61,7 +61,7 @@ void write_stats(const Statistics& s, const std::string& path) {
 std::vector<OutputFile> outputs_of(const RenderOptions& o) {
     std::vector<OutputFile> files{{o.output, "--output", {".exr", kFilmExtension}},
                                   {o.preview, "--preview", {".png", ".jpg", ".jpeg"}},
-                                  {o.deep, "--deep", {".exr"}},
+                                  {names_film_file(o.deep) ? "" : o.deep, "--deep", {".exr"}},
                                   {o.stats == "-" ? "" : o.stats, "--stats", {}}};
     for (const OutputFile& f : o.runs.outputs(o.output)) files.push_back(f);
     return files;
@@ -167,25 +167,12 @@ RenderResult render_with_progress(const Scene& scene, const RenderOptions& o,
     return result;
 }
 
-// Depths are not in film files.
+// A part of a picture may keep its depths in itself alone.
 void check_deep(const RenderOptions& o) {
-    const bool film = std::filesystem::path(o.output).extension() == kFilmExtension;
-    if (o.deep.empty() || (!film && o.runs.checkpoint.empty() && o.runs.resume.empty())) return;
-    throw Error(ExitCode::usage,
-                "--deep: film files hold no depths; not with --checkpoint, --resume or an output "
-                "that is a film file");
-}
-
-// What the header says of the picture; names of mattes are left to the file that has them.
-void write_deep(RenderResult& r, const std::string& path, const WriteOptions& options,
-                WriteReport& report) {
-    for (const auto& entry : r.image.metadata)
-        if (!entry.first.starts_with("cryptomatte/")) r.deep->metadata.push_back(entry);
-    const WriteReport deep = write_deep_exr(*r.deep, r.image.window, path, options);
-    report.bytes += deep.bytes;
-    report.clamped += deep.clamped;
-    report.non_finite += deep.non_finite;
-    report.files.push_back(path);
+    if (!names_film_file(o.deep) || o.deep == o.output) return;
+    throw Error(ExitCode::usage, "--deep " + o.deep +
+                                     ": must end in .exr; the film file of --output is the only "
+                                     "one that depths may go to");
 }
 
 // Hours of rendering are not lost with a full disk.
@@ -238,8 +225,9 @@ int run_render(RenderOptions options, const std::string& command) {
     const auto write = [&](RenderResult& r) {
         describe_picture(r.image, scene->hash(), r.stats, command, files.format);
         WriteReport report = write_picture_files(r.image, files);
-        if (r.deep)
-            write_deep(r, options.deep, write_options(files.format, options.scene.threads), report);
+        if (r.deep && !names_film_file(options.deep))
+            write_deep_file(r.image, *r.deep, options.deep,
+                            write_options(files.format, options.scene.threads), report);
         return report;
     };
     RenderResult result = render_with_progress(*scene, options, write, printer, display.get());
@@ -298,7 +286,8 @@ void add_render(CLI::App& app, CommandLine& line) {
                     "HOST:PORT of a tev viewer that shows the picture as it grows")
         ->check(named);
     sub->add_option("--deep", o->deep,
-                    "Also a deep EXR: beauty apart by depth, for merging by depth")
+                    "Also a deep EXR: beauty apart by depth, for merging by depth; or the .tsf of "
+                    "-o, to keep depths in it for tessera merge --deep")
         ->check(named);
     o->out.add_to(*sub);
     sub->add_flag_callback(

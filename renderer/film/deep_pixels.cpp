@@ -99,13 +99,25 @@ std::uint32_t DeepPixels::put(std::size_t pixel, std::uint32_t n,
     return static_cast<std::uint32_t>(out.size() - before);
 }
 
+DeepPixels::Counts DeepPixels::counts(std::size_t pixel) const noexcept {
+    Counts n;
+    for (const Bin& b : pixels_[pixel].bins)
+        (b.key == kBackground ? n.background : n.hits) += b.count;
+    return n;
+}
+
 std::size_t DeepPixels::crowded() const noexcept {
     return static_cast<std::size_t>(
         std::count_if(pixels_.begin(), pixels_.end(), [](const Pixel& p) { return p.level > 0; }));
 }
 
 DeepPixelsState DeepPixels::state() const {
+    std::size_t bins = 0;
+    for (const Pixel& p : pixels_) bins += p.bins.size();
     DeepPixelsState s;
+    s.sizes.reserve(pixels_.size()), s.levels.reserve(pixels_.size());
+    s.keys.reserve(bins), s.counts.reserve(bins);
+    s.depths.reserve(2 * bins), s.sums.reserve(6 * bins);
     for (const Pixel& p : pixels_) {
         s.sizes.push_back(static_cast<std::uint8_t>(p.bins.size()));
         s.levels.push_back(p.level);
@@ -157,6 +169,12 @@ std::size_t DeepPixels::bytes() const noexcept {
     std::size_t sum = pixels_.capacity() * sizeof(Pixel);
     for (const Pixel& p : pixels_) sum += p.bins.capacity() * sizeof(Bin);
     return sum;
+}
+
+void note_crowds(const DeepPixels& deep, std::vector<std::string>& notes) {
+    if (deep.crowded() > 0)
+        notes.push_back("deep: " + std::to_string(deep.crowded()) + " pixels see more than " +
+                        std::to_string(DeepPixels::kMaxDepths) + " depths; theirs are coarser");
 }
 
 }  // namespace tessera

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "renderer/api/deep.h"
@@ -42,6 +43,11 @@ public:
     /// Appends the pixel's samples, nearest first, the background last; returns how many. n: camera
     /// samples that the pixel had.
     std::uint32_t put(std::size_t pixel, std::uint32_t n, std::vector<DeepSample>& out) const;
+    /// Samples that met something, and those of a bright background.
+    struct Counts {
+        std::uint64_t hits = 0, background = 0;
+    };
+    Counts counts(std::size_t pixel) const noexcept;
     /// Pixels whose steps had to be doubled.
     std::size_t crowded() const noexcept;
 
@@ -68,5 +74,8 @@ private:
 
     std::vector<Pixel> pixels_;
 };
+
+/// Tells of pixels whose depths are coarser than the others'.
+void note_crowds(const DeepPixels& deep, std::vector<std::string>& notes);
 
 }  // namespace tessera

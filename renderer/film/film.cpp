@@ -262,6 +262,17 @@ std::vector<Layer> Film::layers(const PixelWindow& part) const {
     return out;
 }
 
+bool Film::take_deep(const DeepPixelsState& state) {
+    std::optional<DeepPixels> read = DeepPixels::from(state);
+    bool fits = read && read->pixels() == beauty_.size();
+    for (std::size_t i = 0; fits && i < beauty_.size(); ++i) {
+        const DeepPixels::Counts n = read->counts(i);
+        fits = n.hits == beauty_[i].hits && n.hits + n.background <= beauty_[i].samples;
+    }
+    if (fits) deep_ = std::move(read);
+    return fits;
+}
+
 DeepImage Film::deep_image() const {
     DeepImage image;
     image.window = window_;

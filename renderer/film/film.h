@@ -81,7 +81,9 @@ public:
     IdCoverage* coverage(std::size_t pass) noexcept {
         return planes_[pass].coverage ? &*planes_[pass].coverage : nullptr;
     }
-    DeepPixels* deep() noexcept { return deep_ ? &*deep_ : nullptr; }
+    const DeepPixels* deep() const noexcept { return deep_ ? &*deep_ : nullptr; }
+    /// Depths that go with what arrays() holds already; false if they do not.
+    bool take_deep(const DeepPixelsState& state);
     /// Counts and samples; the rest is the caller's.
     DeepImage deep_image() const;
     /// Samples of all pixels.

@@ -23,7 +23,13 @@ void each_array(State& s, const Visit& visit) {
     visit(".dropped_at", s.dropped_at), visit(".dropped", s.dropped);
 }
 
-// Names of a film's arrays and their sizes; what coverage takes only the film knows.
+template <class State, class Visit>
+void each_deep_array(State& s, const Visit& visit) {
+    visit("deep_sizes", s.sizes), visit("deep_levels", s.levels), visit("deep_keys", s.keys);
+    visit("deep_counts", s.counts), visit("deep_depths", s.depths), visit("deep_sums", s.sums);
+}
+
+// Names of a film's arrays and their sizes; what states take only the film knows.
 struct Expected {
     std::string name;
     std::optional<std::uint64_t> bytes;
@@ -39,6 +45,12 @@ std::vector<Expected> expected_arrays(const FilmHeader& h) {
         IdCoverageState none;
         each_array(none, [&](const char* name, const auto& v) {
             out.push_back({p.name + name, std::nullopt, sizeof v[0]});
+        });
+    }
+    if (h.deep) {
+        DeepPixelsState none;
+        each_deep_array(none, [&](const char* name, const auto& v) {
+            out.push_back({name, std::nullopt, sizeof v[0]});
         });
     }
     return out;
@@ -84,30 +96,35 @@ bool names_film_file(const std::string& path) {
            });
 }
 
-std::vector<IdCoverageState> coverage_states(Film& film) {
-    std::vector<IdCoverageState> out;
+FilmStates states_of(Film& film) {
+    FilmStates out;
     for (std::size_t p = 0; p < film.passes().size(); ++p)
-        if (const IdCoverage* c = film.coverage(p)) out.push_back(c->state());
+        if (const IdCoverage* c = film.coverage(p)) out.coverage.push_back(c->state());
+    if (film.deep()) out.deep = film.deep()->state();
     return out;
 }
 
 std::uint64_t write_film_file(const std::string& path, const FilmHeader& header,
-                              std::span<const Film::Array> arrays,
-                              std::span<const IdCoverageState> coverage) {
+                              std::span<const Film::Array> arrays, const FilmStates& states) {
     std::vector<NamedBytes> named;
     for (const Film::Array& a : arrays) named.push_back({a.name, a.bytes});
-    auto state = coverage.begin();
+    auto state = states.coverage.begin();
     for (const Pass& p : header.passes) {
         if (!counts_names(p)) continue;
         each_array(*state++, [&](const char* name, const auto& v) {
             named.push_back({p.name + name, std::as_bytes(std::span(v))});
         });
     }
+    if (header.deep) {
+        each_deep_array(*states.deep, [&](const char* name, const auto& v) {
+            named.push_back({name, std::as_bytes(std::span(v))});
+        });
+    }
     return write_array_file(path, to_json(header), named);
 }
 
 std::uint64_t write_film_file(const std::string& path, const FilmHeader& header, Film& film) {
-    return write_film_file(path, header, film.arrays(), coverage_states(film));
+    return write_film_file(path, header, film.arrays(), states_of(film));
 }
 
 FilmHeader read_film_header(const std::string& path) { return header_of(ArrayFile(path)); }
@@ -115,17 +132,18 @@ FilmHeader read_film_header(const std::string& path) { return header_of(ArrayFil
 FilmFile read_film_file(const std::string& path) {
     ArrayFile file(path);
     FilmHeader header = header_of(file);
-    Film film(header.window, header.passes);
+    Film film(header.window, header.passes, header.deep);
     std::vector<std::span<std::byte>> into;
     for (const Film::Array& a : film.arrays()) into.push_back(a.bytes);
     const auto names = std::count_if(header.passes.begin(), header.passes.end(), counts_names);
     std::vector<IdCoverageState> coverage(static_cast<std::size_t>(names));
-    for (IdCoverageState& state : coverage) {
-        each_array(state, [&](const char*, auto& v) {
-            v.resize(file.arrays()[into.size()].bytes / sizeof v[0]);
-            into.push_back(std::as_writable_bytes(std::span(v)));
-        });
-    }
+    const auto room = [&](const char*, auto& v) {
+        v.resize(file.arrays()[into.size()].bytes / sizeof v[0]);
+        into.push_back(std::as_writable_bytes(std::span(v)));
+    };
+    for (IdCoverageState& state : coverage) each_array(state, room);
+    DeepPixelsState deep;
+    if (header.deep) each_deep_array(deep, room);
     file.read(into);
     auto state = coverage.begin();
     for (std::size_t p = 0; p < header.passes.size(); ++p) {
@@ -136,6 +154,8 @@ FilmFile read_film_file(const std::string& path) {
             file.fail("is damaged: its counts of names contradict each other");
         *film.coverage(p) = std::move(*read);
     }
+    if (header.deep && !film.take_deep(deep))
+        file.fail("is damaged: its depths contradict each other");
     const SampleCounts counts = sample_range(film);
     if (counts.least != header.least || counts.most != header.most)
         file.fail("is damaged: its pixels have not the samples that its header says");

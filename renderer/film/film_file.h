@@ -2,8 +2,10 @@
 // A film on disk: checkpoints, and parts of pictures to be merged.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "renderer/film/film.h"
 #include "renderer/film/film_header.h"
@@ -14,13 +16,17 @@ inline constexpr const char* kFilmExtension = ".tsf";
 /// Whether a path ends so.
 bool names_film_file(const std::string& path);
 
-/// What a film's passes of names counted, in their order: what arrays() leaves out.
-std::vector<IdCoverageState> coverage_states(Film& film);
+/// What arrays() leaves out.
+struct FilmStates {
+    std::vector<IdCoverageState> coverage;  // of the passes of names, in their order
+    std::optional<DeepPixelsState> deep;
+    bool operator==(const FilmStates&) const = default;
+};
+FilmStates states_of(Film& film);
 
 /// Whole or not at all; returns the size. Throws Error(output).
 std::uint64_t write_film_file(const std::string& path, const FilmHeader& header,
-                              std::span<const Film::Array> arrays,
-                              std::span<const IdCoverageState> coverage);
+                              std::span<const Film::Array> arrays, const FilmStates& states);
 std::uint64_t write_film_file(const std::string& path, const FilmHeader& header, Film& film);
 
 /// Throws Error(scene): no such file, foreign, cut short, damaged, of another format.

@@ -23,6 +23,7 @@ struct FilmHeader {
     PixelWindow window;
     std::uint64_t seed = 0;
     Passes passes;
+    bool deep = false;                            // beauty apart by depth too
     std::vector<std::vector<std::uint32_t>> ids;  // of passes that count names: theirs, by key
     int first_sample = 0;                         // index
     std::uint32_t least = 0, most = 0;            // samples of a pixel

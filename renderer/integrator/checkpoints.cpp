@@ -6,7 +6,6 @@
 #include <system_error>
 
 #include "renderer/api/error.h"
-#include "renderer/film/film_file.h"
 
 namespace tessera {
 
@@ -43,7 +42,7 @@ void Checkpoints::run() {
         given_ = false;
         if (!copied_) continue;
         lock.unlock();
-        write([&] { write_film_file(path_, header_, copies_, coverage_); });
+        write([&] { write_film_file(path_, header_, copies_, states_); });
         lock.lock();
     }
 }
@@ -77,9 +76,9 @@ bool Checkpoints::copy(Film& film, Workers& workers) {
                 bytes_ += a.bytes.size();
             }
         }
-        coverage_ = coverage_states(film);
+        states_ = states_of(film);
     } catch (const std::bad_alloc&) {
-        memory_.clear(), copies_.clear(), coverage_.clear(), bytes_ = 0;
+        memory_.clear(), copies_.clear(), states_ = {}, bytes_ = 0;
         return false;
     }
     // By all: most of the time goes to the first touch of the copy's pages.

@@ -13,6 +13,7 @@
 
 #include "renderer/core/parallel.h"
 #include "renderer/film/film.h"
+#include "renderer/film/film_file.h"
 #include "renderer/film/film_header.h"
 
 namespace tessera {
@@ -54,7 +55,7 @@ private:
     // A copy of the film's arrays, kept from one to the next.
     std::vector<std::unique_ptr<std::byte[]>> memory_;
     std::vector<Film::Array> copies_;
-    std::vector<IdCoverageState> coverage_;
+    FilmStates states_;
     std::size_t bytes_ = 0;
     FilmHeader header_;
     std::mutex mutex_;

@@ -34,7 +34,7 @@ public:
           window_(window_of(scene.film())),
           film_(settings.resume.empty() ? Film(window_, scene.passes(), settings.deep)
                                         : resumed_film(scene, window_, settings, resumed_s_)),
-          header_(film_header(scene, window_, settings.first_sample)),
+          header_(film_header(scene, window_, settings)),
           times_(std::any_of(scene.passes().begin(), scene.passes().end(),
                              [](const Pass& p) { return p.source == PassSource::seconds; })),
           filter_(scene.film().filter, scene.film().filter_width_px),
@@ -251,10 +251,7 @@ private:
         }
         add_mattes(film_, header_.ids, r.image.layers, s.notes);
         r.image.metadata = header_.metadata;
-        if (const std::size_t crowded = film_.deep() ? film_.deep()->crowded() : 0; crowded > 0)
-            s.notes.push_back("deep: " + std::to_string(crowded) + " pixels see more than " +
-                              std::to_string(DeepPixels::kMaxDepths) +
-                              " depths; theirs are coarser");
+        if (film_.deep()) note_crowds(*film_.deep(), s.notes);
         if (film_.passes().empty()) s.left_out.push_back({"passes", "only beauty was asked for"});
         return r;
     }

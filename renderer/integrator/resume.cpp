@@ -35,7 +35,8 @@ bool even_blocks(const Film& film) {
 
 }  // namespace
 
-FilmHeader film_header(const Scene& scene, const PixelWindow& window, int first_sample) {
+FilmHeader film_header(const Scene& scene, const PixelWindow& window,
+                       const RenderSettings& settings) {
     const Statistics& s = scene.statistics();
     FilmHeader h;
     h.version = s.version;
@@ -48,7 +49,8 @@ FilmHeader film_header(const Scene& scene, const PixelWindow& window, int first_
     h.window = window;
     h.seed = scene.settings().seed;
     h.passes = scene.passes();
-    h.first_sample = first_sample;
+    h.deep = settings.deep;
+    h.first_sample = settings.first_sample;
     for (const Pass& p : h.passes) {
         h.ids.emplace_back();
         if (!counts_names(p.source)) continue;
@@ -68,7 +70,7 @@ Film resumed_film(const Scene& scene, const PixelWindow& window, const RenderSet
         throw Error(code, path + ": cannot go on from it: its " + what + " is " + there +
                               ", this render's is " + here);
     };
-    const FilmHeader wanted = film_header(scene, window, settings.first_sample);
+    const FilmHeader wanted = film_header(scene, window, settings);
     // Before the arrays, which may be large, are read.
     const FilmHeader there = read_film_header(path);
     if (const auto d = difference(there, wanted)) refuse(ExitCode::scene, d->what, d->a, d->b);

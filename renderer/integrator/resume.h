@@ -8,7 +8,8 @@
 namespace tessera {
 
 /// Without samples and seconds.
-FilmHeader film_header(const Scene& scene, const PixelWindow& window, int first_sample);
+FilmHeader film_header(const Scene& scene, const PixelWindow& window,
+                       const RenderSettings& settings);
 
 /// Reads settings.resume; seconds: that it took so far. Throws Error(scene) if it is no good or of
 /// another picture, Error(usage) if it has other samples than are asked for.

@@ -1,12 +1,14 @@
 """Deep files: --deep beside the picture, flatten back to it, what other tools make of them, and broken ones."""
 
+import json
 import os
 import shutil
 import subprocess
+import time
 import unittest
 
 from exr import Exr
-from support import OUTPUT, SCENE, SCENE_TOML, USAGE, TesseraTest
+from support import OUTPUT, SCENE, SCENE_TOML, SLOWDOWN, USAGE, TesseraTest, command
 
 OIIOTOOL = shutil.which("oiiotool")
 # A veil before the fin, a bright sky, a lens.
@@ -90,12 +92,89 @@ class Deep(TesseraTest):
         self.expect(USAGE, "render", "scene.toml", "-o", "a.exr", "--deep", "a.exr")
         self.expect(USAGE, "render", "scene.toml", "-o", "a.exr", "--deep", "a.png")
         self.expect(OUTPUT, "render", "scene.toml", "-o", "a.exr", "--deep", "nowhere/a.exr")
-        self.expect(USAGE, "render", "scene.toml", "-o", "a.exr", "--deep", "d.exr", "--checkpoint", "c.film")
+        self.expect(USAGE, "render", "scene.toml", "-o", "a.exr", "--deep", "a.tsf")
+        self.expect(USAGE, "render", "scene.toml", "-o", "a.tsf", "--deep", "b.tsf")
+        self.assertEqual([n for n in self.files() if n.endswith((".tsf", ".exr"))], [])
         self.render("--deep", "deep.exr")
         self.expect(USAGE, "flatten", "deep.exr")
         self.expect(USAGE, "flatten", "-o", "flat.exr")
         self.expect(USAGE, "flatten", "deep.exr", "-o", "flat.png")
         self.expect(OUTPUT, "flatten", "deep.exr", "-o", "nowhere/flat.exr")
+
+
+class DeepInPieces(TesseraTest):
+    """The deep file of a render in several runs has the bytes of one run's."""
+
+    ARGS = ("--float", "--deterministic-metadata", "--aov", "Z", "--aov", "cryptomatte")
+
+    def setUp(self):
+        super().setUp()
+        self.write_scene(DEEP_TOML)
+
+    def whole(self, *args):
+        self.render("--deep", "whole.exr", *self.ARGS, *args, output="flat.exr")
+        return (self.folder / "whole.exr").read_bytes()
+
+    def deep(self, *args):
+        """Of a command that writes deep.exr."""
+        self.expect(0, *args, timeout=60)
+        return (self.folder / "deep.exr").read_bytes()
+
+    def test_killed_and_resumed(self):
+        whole = self.whole("--spp", "1500")
+        args = ("render", "scene.toml", "-o", "out.exr", "--deep", "deep.exr", "--spp", "1500", *self.ARGS)
+        again = ("--checkpoint", "c.tsf", "--checkpoint-every", "0.02", "--resume", "c.tsf")
+        checkpoint = self.folder / "c.tsf"
+        for kill in range(3):
+            before = checkpoint.stat().st_mtime_ns if kill else 0
+            process = subprocess.Popen(command(*args, *again), cwd=self.folder, stderr=subprocess.DEVNULL)
+            self.addCleanup(process.kill)
+            deadline = time.monotonic() + 20 * SLOWDOWN
+            while not checkpoint.exists() or checkpoint.stat().st_mtime_ns == before:
+                self.assertLess(time.monotonic(), deadline, "no checkpoint")
+                time.sleep(0.005)
+            process.kill()
+            process.wait()
+        resumed = self.deep(*args, *again, "-t", "1", "--stats", "s.json")
+        self.assertGreater(json.loads((self.folder / "s.json").read_text())["resumed"]["spp"], 0)
+        self.assertEqual(resumed, whole)
+
+    def test_ranges_and_crops_merged_in_any_order(self):
+        whole = self.whole("--spp", "21")
+        parts = []
+        for samples in ("0:5", "5:6", "6:21"):
+            for crop in ("0,0,22,32", "22,0,48,32"):
+                parts.insert(0, f"p{len(parts)}.tsf")
+                self.expect(0, "render", "scene.toml", "-o", parts[0], "--deep", parts[0], "--samples", samples,
+                            "--crop", crop, *self.ARGS)  # fmt: skip
+        merge = ("-o", "out.exr", "--deep", "deep.exr", "--float", "--deterministic-metadata")
+        self.assertEqual(self.deep("merge", *parts, *merge), whole)
+        self.assertEqual(self.deep("merge", *reversed(parts), *merge), whole)
+        self.assert_same_bits(Exr(self.folder / "flat.exr"), Exr(self.folder / "out.exr"))
+        # By way of a merged film file that goes on.
+        self.expect(0, "merge", *parts[2:], "-o", "early.tsf")
+        self.assertEqual(self.deep("render", "scene.toml", "-o", "out.exr", "--deep", "deep.exr", "--spp", "21",
+                                   "--resume", "early.tsf", *self.ARGS), whole)  # fmt: skip
+
+    def test_a_part_may_have_a_deep_file_of_its_own(self):
+        part = self.deep("render", "scene.toml", "-o", "a.tsf", "--deep", "deep.exr", "--samples", "0:4", *self.ARGS)
+        self.assertEqual(part, self.whole("--spp", "4"))
+
+    def test_depths_that_were_not_kept(self):
+        self.render("--deep", "d.exr", "--checkpoint", "with.tsf", *self.ARGS)
+        self.render("--checkpoint", "without.tsf", *self.ARGS)
+        out = ("-o", "no.exr")
+        for resume, args, text in (
+            ("without.tsf", ("--deep", "no_deep.exr"), "(--deep) is not kept, this render's is kept"),
+            ("with.tsf", (), "(--deep) is kept, this render's is not kept"),
+        ):
+            run = self.expect(SCENE, "render", "scene.toml", *out, "--resume", resume, *args, *self.ARGS)
+            self.assertIn(resume + ": cannot go on from it: its set of depths " + text, run.err)
+        run = self.expect(SCENE, "merge", "without.tsf", *out, "--deep", "no_deep.exr")
+        self.assertIn("without.tsf keeps no depths", run.err)
+        run = self.expect(SCENE, "merge", "with.tsf", "without.tsf", *out)
+        self.assertIn("set of depths (--deep)", run.err)
+        self.assertEqual([n for n in self.files() if n.startswith("no")], [])
 
 
 class BrokenDeep(TesseraTest):

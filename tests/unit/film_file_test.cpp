@@ -42,7 +42,7 @@ FilmHeader header_of(const std::vector<std::string>& passes) {
 
 // Three samples of every pixel, of everything.
 Film film_of(const FilmHeader& h) {
-    Film film(h.window, h.passes);
+    Film film(h.window, h.passes, h.deep);
     Random random(5);
     const auto any = [&] { return random.unit(); };
     PassSamples passes = film.pass_samples();
@@ -133,8 +133,34 @@ TEST_CASE("film file: every kind of pass comes back, bit for bit") {
         REQUIRE(a[i].bytes.size() == b[i].bytes.size());
         CHECK(std::memcmp(a[i].bytes.data(), b[i].bytes.data(), a[i].bytes.size()) == 0);
     }
-    CHECK(coverage_states(film) == coverage_states(read.film));
-    CHECK(coverage_states(film).size() == 3);
+    CHECK(states_of(film).coverage == states_of(read.film).coverage);
+    CHECK(states_of(film).coverage.size() == 3);
+}
+
+TEST_CASE("film file: depths come back, and only those that go with the samples") {
+    const TempFolder folder;
+    FilmHeader h = header_of({"Z", "CryptoObject"});
+    h.deep = true;
+    Film film = film_of(h);
+    write_film_file(folder / "a.tsf", h, film);
+    FilmFile read = read_film_file(folder / "a.tsf");
+    CHECK(read.header.deep);
+    REQUIRE(states_of(film).deep);
+    CHECK(states_of(film) == states_of(read.film));
+    CHECK(states_of(film).deep->keys.size() > 50);
+
+    const auto spoilt = [&](auto spoil) {
+        FilmStates states = states_of(film);
+        spoil(*states.deep);
+        write_film_file(folder / "b.tsf", h, film.arrays(), states);
+        return refusal(folder / "b.tsf");
+    };
+    CHECK(spoilt([](auto&) {}) == "");
+    CHECK(spoilt([](auto& s) { ++s.counts[0]; }).find("depths") != std::string::npos);
+    CHECK(spoilt([](auto& s) { s.sizes.push_back(0), s.levels.push_back(0); }).find("depths") !=
+          std::string::npos);
+    CHECK(spoilt([](auto& s) { s.sums.pop_back(); }).find("depths") != std::string::npos);
+    CHECK(spoilt([](auto& s) { s = {}; }).find("depths") != std::string::npos);
 }
 
 TEST_CASE("film file: cut short anywhere it is refused, and says so") {
@@ -195,7 +221,7 @@ TEST_CASE("film file: a text that promises other pixels, passes or samples is re
         std::vector<NamedBytes> arrays;
         Film& film = w.film;
         for (const Film::Array& a : film.arrays()) arrays.push_back({a.name, a.bytes});
-        const auto states = coverage_states(film);
+        const auto states = states_of(film).coverage;
         const IdCoverageState& s = states.at(0);
         arrays.push_back({"CryptoObject.sizes", std::as_bytes(std::span(s.sizes))});
         arrays.push_back({"CryptoObject.keys", std::as_bytes(std::span(s.keys))});
@@ -242,6 +268,7 @@ TEST_CASE("film file: a header tells what differs, and in which order") {
     CHECK(what([](FilmHeader& b) { b.version = "9", b.seed = 1; }) == "version of Tessera");
     CHECK(what([](FilmHeader& b) { b.width = 9, b.scene_hash = "c"; }) == "resolution");
     CHECK(what([](FilmHeader& b) { b.seed = 1, b.scene_hash = "c"; }) == "seed");
+    CHECK(what([](FilmHeader& b) { b.deep = true; }) == "set of depths (--deep)");
     CHECK(what([](FilmHeader& b) { b.isa = "sse2"; }) == "instruction set (--isa)");
     CHECK(what([](FilmHeader& b) { b.working_space = "lin_rec709"; }) == "working space");
     CHECK(what([](FilmHeader& b) { b.passes[5].expression = "C<RD>O"; }) == "pass 6");

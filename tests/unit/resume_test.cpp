@@ -37,15 +37,20 @@ bool same(const std::vector<Layer>& a, const std::vector<Layer>& b) {
     return true;
 }
 
+bool same(const DeepImage& a, const DeepImage& b) {
+    return a.counts == b.counts && a.samples == b.samples;
+}
+
 }  // namespace
 
 TEST_CASE(
     "resume: stopped in the middle of passes again and again, the bits are those of one run") {
     const TempFolder folder;
     const ScenePtr s = scene();
-    const std::vector<Layer> whole = layers_of(*s, {});
-    const std::string file = folder / "c.tsf";
     RenderSettings settings;
+    settings.deep = true;
+    const RenderResult straight = render(*s, settings);
+    const std::string file = folder / "c.tsf";
     settings.checkpoint = file;
     settings.tile = 8;
     RenderResult result;
@@ -64,7 +69,8 @@ TEST_CASE(
     } while (!result.complete && runs < 100);
     CHECK(runs > 3);
     CHECK(result.complete);
-    CHECK(same(result.image.layers, whole));
+    CHECK(same(result.image.layers, straight.image.layers));
+    CHECK(same(*result.deep, *straight.deep));
 }
 
 TEST_CASE("resume: a film file of fewer samples goes on to more, alone or from a later sample") {
@@ -115,7 +121,7 @@ TEST_CASE("resume: ranges of samples merge into the bits of the whole, in any or
     FilmFile straight = read_film_file(all.film_file);
     const std::vector<Layer> a = sum.layers(), b = straight.film.layers();
     CHECK(same(a, b));
-    CHECK(coverage_states(sum) == coverage_states(straight.film));
+    CHECK(states_of(sum).coverage == states_of(straight.film).coverage);
 }
 
 TEST_CASE(
@@ -161,6 +167,9 @@ TEST_CASE("resume: a film of another render is refused before anything is traced
     CHECK(code(scene(4)) == ExitCode::done);
     CHECK(code(scene(4, 1)) == ExitCode::scene);
     CHECK(code(scene(3)) == ExitCode::usage);
+    settings.deep = true;
+    CHECK(code(scene(4)) == ExitCode::scene);  // its depths were not kept
+    settings.deep = false;
     settings.resume = folder / "none.tsf";
     CHECK(code(scene(4)) == ExitCode::scene);
     settings.resume.clear();
