@@ -61,7 +61,8 @@ struct Statistics {
     int resumed_spp = 0;   // of spp, those of earlier runs
     double resumed_s = 0;  // that these took
     int checkpoints = 0, checkpoints_failed = 0;
-    double checkpoint_s = 0;  // for which the workers rested
+    double checkpoint_s = 0;        // for which the workers rested
+    double checkpoint_every_s = 0;  // from one to the next
     std::uint64_t seed = 0;
     double load_s = 0, build_s = 0, render_s = 0, write_s = 0;
     RayCounts rays;
@@ -130,11 +131,11 @@ struct RenderSettings {
     /// cleared then. The others wait while on_snapshot runs.
     std::atomic<bool>* snapshot = nullptr;
     std::function<void(RenderResult&&)> on_snapshot;
-    int first_sample = 0;      // the scene's spp count from here; the sum below 2^24
-    std::string resume;        // film file of an earlier run to go on from; "": none
-    std::string checkpoint;    // film file to save to now and then, and at the end; "": none
-    double checkpoint_s = 60;  // seconds between two
-    std::string film_file;     // film file to write at the end; "": none
+    int first_sample = 0;     // the scene's spp count from here; the sum below 2^24
+    std::string resume;       // film file of an earlier run to go on from; "": none
+    std::string checkpoint;   // film file to save to now and then, and at the end; "": none
+    double checkpoint_s = 0;  // seconds between two; 0: 60, more where that costs over 1 %
+    std::string film_file;    // film file to write at the end; "": none
     /// What goes wrong without ending the render: checkpoints. From any thread.
     std::function<void(const std::string&)> warn;
 };

@@ -457,6 +457,7 @@ struct OutputDesc {
     ExrCompression compression = ExrCompression::zip;  // of colour; data is never lossy
     double dwa_level = 45;                             // dwaa, dwab: more is smaller and coarser
     bool all_float = false;
+    std::string deep;                     // a deep file too, beside the picture; "": none
     bool crop_pad = false;                // the whole frame, black where nothing was rendered
     bool deterministic_metadata = false;  // no date, host, time, command in the header
 };

@@ -37,7 +37,8 @@ bool is_there(const std::string& path) {
 
 bool same_file(const std::string& a, const std::string& b) {
     std::error_code ignored;
-    return a == b || fs::equivalent(a, b, ignored);
+    return a == b || (!a.empty() && !b.empty() &&
+                      fs::weakly_canonical(a, ignored) == fs::weakly_canonical(b, ignored));
 }
 
 }  // namespace
@@ -46,7 +47,10 @@ void LongRenderOptions::add_to(CLI::App& app) {
     CLI::Option* const file =
         app.add_option("--checkpoint", checkpoint,
                        "Film file (.tsf) to save to while rendering and at the end, for --resume");
-    app.add_option("--checkpoint-every", checkpoint_s, "Seconds between two (default 60)")
+    app.add_option(
+           "--checkpoint-every", checkpoint_s,
+           "Seconds between two (default 60, or more where saving would cost over 1 % of the "
+           "time)")
         ->check(CLI::Range(0.01, 1e8))
         ->needs(file);
     app.add_option("--resume", resume,
@@ -69,6 +73,8 @@ void LongRenderOptions::apply(std::optional<int>& spp, const std::string& output
         resume.clear();
     }
     if (!resume.empty()) read_film_header(resume);
+    // One file under two names would have two writers.
+    if (same_file(checkpoint, output)) checkpoint = output;
     if (checkpoint.empty() || !is_there(checkpoint) || same_file(checkpoint, resume)) return;
     try {
         read_film_header(checkpoint);

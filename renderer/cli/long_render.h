@@ -15,8 +15,8 @@ namespace tessera {
 
 struct LongRenderOptions {
     std::string checkpoint, resume, samples;
-    double checkpoint_s = 60;
-    int first_sample = 0;  // from --samples, once apply() is through
+    double checkpoint_s = 0;  // 0: not asked for
+    int first_sample = 0;     // from --samples, once apply() is through
 
     void add_to(CLI::App& app);
     /// Reads --samples into first_sample and spp (which --spp must not have set), checks what

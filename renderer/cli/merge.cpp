@@ -69,8 +69,7 @@ std::vector<Part> read_parts(const MergeOptions& o) {
 SampleBox whole_of(const std::vector<SampleBox>& boxes, const FilmHeader& h,
                    const MergeOptions& o) {
     SampleBox all = bounds(boxes);
-    const bool film = names_film_file(o.output);
-    if (!film && !o.partial) {
+    if (!names_film_file(o.output)) {
         all.first = 0;
         // Ranges of one window are a picture of it; what was cut up is the frame.
         const bool one_window = std::all_of(boxes.begin(), boxes.end(), [&](const SampleBox& b) {
@@ -200,8 +199,9 @@ int run_merge(const MergeOptions& o, const std::string& command) {
     if (!o.preview.empty()) check_view(parts.front().header.working_space, o.view);
     std::vector<SampleBox> boxes;
     for (const Part& p : parts) boxes.push_back(p.box);
-    const SampleBox whole = whole_of(boxes, parts.front().header, o);
+    SampleBox whole = whole_of(boxes, parts.front().header, o);
     const bool complete = check(parts, boxes, whole, o);
+    if (!complete) whole.window = bounds(boxes).window;
     FilmFile all = merge(parts, whole);
     const WriteReport written = write(all, complete, o, command);
     log_info(fmt::format("merged   {} parts, {} spp, into {} ({:.1f} MiB){}", parts.size(),

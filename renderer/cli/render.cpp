@@ -22,6 +22,7 @@
 #include "renderer/cli/signals.h"
 #include "renderer/cli/snapshots.h"
 #include "renderer/cli/tev_display.h"
+#include "renderer/cli/write_time.h"
 #include "renderer/core/log.h"
 #include "renderer/film/film_file.h"
 #include "renderer/film/pass_docs.h"
@@ -79,6 +80,17 @@ void say_what_was_built(const Statistics& s, double load_s, bool quiet) {
     for (const LeftOut& l : s.left_out) log_verbose("left out " + l.what + ": " + l.why);
 }
 
+// Before it is made, so that who asks for too much knows why it ended.
+void say_what_the_film_takes(const Scene& scene, const RenderOptions& o) {
+    const FilmDesc& film = scene.film();
+    const PixelWindow window = film.crop ? *film.crop : PixelWindow{0, 0, film.width, film.height};
+    const std::uint64_t bytes = Film::expected_bytes(window, scene.passes(), !o.deep.empty());
+    log_info(fmt::format("film     {}x{}, beauty{} and {} passes, {:.1f} MiB{}", window.width(),
+                         window.height(), o.deep.empty() ? "" : ", depths", scene.passes().size(),
+                         static_cast<double>(bytes) / (1 << 20),
+                         o.runs.checkpoint.empty() ? "" : " and as much for checkpoints"));
+}
+
 void say_what_was_rendered(const Statistics& s) {
     const auto per_second = [&](std::uint64_t n) {
         return count(
@@ -90,8 +102,9 @@ void say_what_was_rendered(const Statistics& s) {
                          before, s.render_s, per_second(s.samples), per_second(s.rays.total()),
                          s.threads));
     if (s.checkpoints + s.checkpoints_failed > 0)
-        log_verbose(fmt::format("{} checkpoints, {} failed; the render rested {:.3g} s for them",
-                                s.checkpoints, s.checkpoints_failed, s.checkpoint_s));
+        log_verbose(fmt::format(
+            "{} checkpoints, {} failed, one every {:.3g} s; the render rested {:.3g} s for them",
+            s.checkpoints, s.checkpoints_failed, s.checkpoint_every_s, s.checkpoint_s));
     if (s.textures_cached > 0)
         log_info(fmt::format(
             "textures {} files in memory, {} in the tile cache; {} of {} MiB, {} MiB read",
@@ -137,14 +150,24 @@ ProgressStyle progress_style(const RenderOptions& o) {
     return silent ? ProgressStyle::none : style;
 }
 
-RenderResult render_with_progress(const Scene& scene, const RenderOptions& o,
+// Of the time asked for, what writing the picture leaves; 0: there is no limit.
+double time_to_render(const Scene& scene, const RenderOptions& o, const PictureFiles& files) {
+    if (o.time_s <= 0) return 0;
+    const auto start = std::chrono::steady_clock::now();
+    const double write_s = foreseen_write_time(scene, files);
+    const std::chrono::duration<double> trial = std::chrono::steady_clock::now() - start;
+    log_verbose(fmt::format("of {:.3g} s, {:.2g} s are kept for writing", o.time_s, write_s));
+    return std::max(o.time_s - write_s - trial.count(), 1e-6);
+}
+
+RenderResult render_with_progress(const Scene& scene, const RenderOptions& o, double time_s,
                                   const Snapshots::Write& write, ProgressPrinter& printer,
                                   TevDisplay* display) {
     Snapshots snapshots(write, printer);
     RenderSettings settings;
     settings.threads = o.scene.threads;
     settings.tile = o.scene.tile;
-    settings.time_s = o.time_s;
+    settings.time_s = time_s;
     settings.deep = !o.deep.empty();
     settings.cancel = &stop_at_next_tile();
     settings.progress = [&](const Progress& p) { printer.show(p); };
@@ -173,6 +196,14 @@ void check_deep(const RenderOptions& o) {
     throw Error(ExitCode::usage, "--deep " + o.deep +
                                      ": must end in .exr; the film file of --output is the only "
                                      "one that depths may go to");
+}
+
+// The deep file that the scene asks for lies beside the picture; a part keeps the depths.
+void take_deep(const std::string& named, RenderOptions& o) {
+    if (named.empty() || !o.deep.empty()) return;
+    const auto beside = std::filesystem::path(o.output).parent_path() / named;
+    o.deep = names_film_file(o.output) ? o.output : beside.string();
+    check_outputs(outputs_of(o));
 }
 
 // Hours of rendering are not lost with a full disk.
@@ -205,6 +236,7 @@ int run_render(RenderOptions options, const std::string& command) {
 
     double load_s = 0;
     SceneDesc desc = options.scene.load(load_s);
+    take_deep(desc.output.deep, options);
     check_outputs_spare(outputs_of(options), desc);
     options.out.apply(desc);
     check_codec(desc);
@@ -219,6 +251,7 @@ int run_render(RenderOptions options, const std::string& command) {
     if (!options.preview.empty()) check_view(desc.film.working_space, options.view);
     const ScenePtr scene = build_scene(std::move(desc), options.scene.build_options());
     say_what_was_built(describe(*scene), load_s, options.quiet);
+    say_what_the_film_takes(*scene, options);
 
     ProgressPrinter printer(progress_style(options));
     const auto display = open_display(scene->film(), options, printer);
@@ -230,7 +263,8 @@ int run_render(RenderOptions options, const std::string& command) {
                             write_options(files.format, options.scene.threads), report);
         return report;
     };
-    RenderResult result = render_with_progress(*scene, options, write, printer, display.get());
+    RenderResult result = render_with_progress(
+        *scene, options, time_to_render(*scene, options, files), write, printer, display.get());
     Statistics& s = result.stats;
     s.load_s = load_s;
     if (!result.complete && s.samples == 0 && s.resumed_spp == 0) {

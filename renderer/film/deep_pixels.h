@@ -56,6 +56,8 @@ public:
     static std::optional<DeepPixels> from(const DeepPixelsState& state);
     std::size_t bytes() const noexcept;
 
+    static constexpr std::size_t kBytesOfOneDepth = 96;  // of a pixel that sees no other
+
 private:
     struct Bin {
         std::uint32_t key = 0, count = 0;

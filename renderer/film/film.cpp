@@ -345,6 +345,16 @@ std::size_t Film::bytes() const noexcept {
     return sum;
 }
 
+std::uint64_t Film::expected_bytes(const PixelWindow& window, const Passes& passes, bool deep) {
+    const std::uint64_t n =
+        static_cast<std::uint64_t>(window.width()) * static_cast<std::uint64_t>(window.height());
+    std::uint64_t sum = deep ? n * DeepPixels::kBytesOfOneDepth : 0;
+    for (const ArraySize& a : array_sizes(window, passes)) sum += a.bytes;
+    for (const Pass& p : passes)
+        if (how(p.source) == How::coverage) sum += n * IdCoverage::kBytesOfOneName;
+    return sum;
+}
+
 std::vector<Film::Array> Film::arrays() {
     std::vector<Array> out;
     const std::vector<ArraySize> sizes = array_sizes(window_, passes_);

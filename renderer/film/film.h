@@ -89,6 +89,8 @@ public:
     /// Samples of all pixels.
     std::vector<std::uint32_t> sample_counts() const;
     std::size_t bytes() const noexcept;
+    /// Of a film before it is made: edges of things and depths will add to it.
+    static std::uint64_t expected_bytes(const PixelWindow& window, const Passes& passes, bool deep);
 
     /// All that the film holds but coverage and depths, as named arrays of plain numbers: what a
     /// checkpoint saves.

@@ -30,6 +30,7 @@ struct IdCoverageState {
 class IdCoverage {
 public:
     static constexpr std::size_t kMaxKeys = 128;
+    static constexpr std::size_t kBytesOfOneName = 16;  // of a pixel that sees no other
 
     explicit IdCoverage(std::size_t pixels) : pixels_(pixels) {}
 

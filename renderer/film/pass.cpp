@@ -107,16 +107,17 @@ constexpr PassInfo kReady[] = {
     data("sample_count", "A", S::sample_count, "samples in the pixel"),
     data("seconds", "A", S::seconds, "time spent on the pixel; not the same from run to run"),
     data("variance", "RGB", S::variance,
-         "of beauty's mean, as if its samples were independent: an upper estimate"),
+         "of beauty's mean, as if its samples were independent: as a rule too much"),
 };
 
 constexpr PassPreset kPresets[] = {
     {"basic", "Z N P albedo", "what is written when nothing is asked for"},
     {"compositing",
-     "Z diffuse_direct diffuse_indirect specular_direct specular_indirect coat_direct "
+     "Z CryptoObject CryptoMaterial diffuse_direct diffuse_indirect specular_direct "
+     "specular_indirect coat_direct "
      "coat_indirect transmission_direct transmission_indirect sss_direct sss_indirect sheen_direct "
      "sheen_indirect volume_direct volume_indirect emission background",
-     "beauty taken apart: all but Z add up to it"},
+     "beauty taken apart, whose colours add up to it; depth and mattes"},
     {"lookdev",
      "Z P Pref N Ng uv facing ao diffuse specular coat transmission sss sheen volume emission "
      "background albedo diffuse_albedo specular_albedo coat_albedo transmission_albedo sss_albedo "

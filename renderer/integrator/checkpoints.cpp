@@ -2,16 +2,34 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <new>
 #include <system_error>
 
 #include "renderer/api/error.h"
 
 namespace tessera {
+namespace {
+
+// Of this thread: waiting for a disk costs the render nothing.
+double processor_seconds() {
+    std::timespec t{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+}  // namespace
+
+double checkpoint_interval(double rest_s, double writing_s, int threads) {
+    return std::max(Checkpoints::kEvery, (rest_s + writing_s / threads) / Checkpoints::kCost);
+}
 
 Checkpoints::Checkpoints(std::string path, double every_s,
                          std::function<void(const std::string&)> warn)
-    : path_(std::move(path)), every_s_(every_s), warn_(std::move(warn)) {
+    : path_(std::move(path)),
+      automatic_(every_s <= 0),
+      every_s_(automatic_ ? kEvery : every_s),
+      warn_(std::move(warn)) {
     if (path_.empty()) return;
     try {
         thread_ = std::thread([this] { run(); });
@@ -34,22 +52,40 @@ void Checkpoints::stop() {
 
 void Checkpoints::run() {
     std::unique_lock lock(mutex_);
-    const auto every = std::chrono::duration<double>(every_s_);
-    while (!wake_.wait_for(lock, every, [&] { return stop_; })) {
+    const auto every = [&] { return std::chrono::duration<double>(every_s_); };
+    while (true) {
+        wake_.wait_for(lock, every(), [&] { return stop_ || hurry_; });
+        if (stop_) return;
+        hurry_ = false;
         wanted_ = true;
         wake_.wait(lock, [&] { return stop_ || given_; });
         if (!given_) return;
         given_ = false;
         if (!copied_) continue;
         lock.unlock();
+        const double start = processor_seconds();
         write([&] { write_film_file(path_, header_, copies_, states_); });
+        writing_s_ = processor_seconds() - start;
         lock.lock();
     }
 }
 
+void Checkpoints::hurry() {
+    {
+        const std::lock_guard lock(mutex_);
+        hurry_ = true;
+    }
+    wake_.notify_all();
+}
+
 void Checkpoints::start(Film& film, FilmHeader header, Workers& workers) {
+    const auto begin = std::chrono::steady_clock::now();
     const bool copied = copy(film, workers);
     if (!copied) write([&] { write_film_file(path_, header, film); });
+    const std::chrono::duration<double> rest = std::chrono::steady_clock::now() - begin;
+    rested_s_ = rested_s_ + rest.count();
+    // What writing takes is known from the one before.
+    if (automatic_) every_s_ = checkpoint_interval(rest.count(), writing_s_, workers.threads());
     {
         const std::lock_guard lock(mutex_);
         wanted_ = false;

@@ -13,6 +13,7 @@
 #include "renderer/film/mattes.h"
 #include "renderer/integrator/block.h"
 #include "renderer/integrator/checkpoints.h"
+#include "renderer/integrator/pass_plan.h"
 #include "renderer/integrator/path_passes.h"
 #include "renderer/integrator/resume.h"
 #include "renderer/integrator/tiles.h"
@@ -48,16 +49,13 @@ public:
         const int spp = scene_.settings().spp;
         int done = static_cast<int>(sample_range(film_).least);
         resumed_ = done;
-        // Passes grow fourfold: an early stop leaves an even picture, and the estimate of the end
-        // is soon good.
-        for (int pass = 1, end = 1; done < spp && !stopped_; pass *= 4, end += pass) {
-            if (end <= done) continue;
-            const int count = std::min(
-                settings_.time_s > 0 ? affordable(done - resumed_, end - done) : end - done,
-                spp - done);
-            if (count == 0) break;
+        PassPlan plan(spp, settings_.time_s);
+        while (const int count = plan.next(done, seconds_since(start_))) {
+            const Clock::time_point start = Clock::now();
             render_pass(done, done + count, spp);
-            if (!stopped_) done += count;
+            if (stopped_) break;
+            done += count;
+            plan.took(count, seconds_since(start));
         }
         save();
         return finish(done);
@@ -66,16 +64,6 @@ public:
 private:
     static PixelWindow window_of(const FilmDesc& film) {
         return film.crop ? *film.crop : PixelWindow{0, 0, film.width, film.height};
-    }
-
-    // How many more samples the time allows, judged by those taken in this run.
-    int affordable(int taken, int wanted) const {
-        if (taken == 0) return 1;
-        const double used = seconds_since(start_), each = used / taken;
-        const double left = settings_.time_s - used;
-        return left < 0.5 * each
-                   ? 0
-                   : std::clamp(static_cast<int>(left / each + 0.5), 1, std::max(1, wanted));
     }
 
     void render_pass(int first, int last, int spp) {
@@ -119,19 +107,28 @@ private:
         if (stopped_) return false;
         bool interrupted = false;
         if (checkpoints_.wanted()) {
-            const Clock::time_point start = Clock::now();
             checkpoints_.start(film_, header(), workers_);
-            checkpoint_s_ += seconds_since(start);
             interrupted = true;
         }
         if (snapshot_wanted()) {
             settings_.snapshot->store(false);
+            if (!settings_.film_file.empty()) save_part_so_far();
             RenderResult so_far = finish(done);
             so_far.complete = so_far.stats.complete = false;
             settings_.on_snapshot(std::move(so_far));
             interrupted = true;
         }
         return interrupted;
+    }
+
+    // With the workers at rest, unless it is the checkpoint, which its own thread writes.
+    void save_part_so_far() {
+        if (settings_.film_file == settings_.checkpoint) return checkpoints_.hurry();
+        try {
+            write_film_file(settings_.film_file, header(), film_);
+        } catch (const std::exception& e) {
+            if (settings_.warn) settings_.warn(std::string("snapshot: ") + e.what());
+        }
     }
 
     const FilmHeader& header() {
@@ -236,7 +233,8 @@ private:
         s.resumed_s = resumed_s_;
         s.checkpoints = checkpoints_.written();
         s.checkpoints_failed = checkpoints_.failed();
-        s.checkpoint_s = checkpoint_s_;
+        s.checkpoint_s = checkpoints_.rested_s();
+        s.checkpoint_every_s = settings_.checkpoint.empty() ? 0 : checkpoints_.every_s();
         s.render_s = seconds_since(start_);
         s.rays = counters_.rays;
         s.samples = counters_.samples;
@@ -281,7 +279,6 @@ private:
     std::mutex mutex_;
     Counters counters_;
     double last_report_ = -1;
-    double checkpoint_s_ = 0;
     Checkpoints checkpoints_;
 };
 

@@ -17,6 +17,9 @@ const KeySet<OutputDesc>& output_rows() {
              key("dwa_level", &O::dwa_level, "Loss of dwaa and dwab: more is smaller and coarser.",
                  {.low = 0, .high = 1000}),
              key("float", &O::all_float, "Every channel as 32-bit float."),
+             key("deep", &O::deep,
+                 "Name of a deep EXR to write too, beauty apart by depth: beside the picture, "
+                 "unless it has a folder."),
              key("crop_pad", &O::crop_pad,
                  "The file holds the whole frame, black where nothing was rendered."),
              key("deterministic_metadata", &O::deterministic_metadata,
@@ -28,7 +31,11 @@ const KeySet<OutputDesc>& output_rows() {
 }  // namespace
 
 void read_output(const Value& table, SceneReader& reader) {
+    const OutputDesc& output = reader.scene.output;
     read_keys(table, output_rows(), reader.scene.output, {reader.problems, "output"});
+    if (!output.deep.empty() && !output.deep.ends_with(".exr"))
+        reader.problems.error(table.find("deep")->loc,
+                              "output: deep is '" + output.deep + "', must end in .exr");
 }
 
 const KeyList& output_keys() { return output_rows().list; }

@@ -1,7 +1,6 @@
 """Deep files: --deep beside the picture, flatten back to it, what other tools make of them, and broken ones."""
 
 import json
-import os
 import shutil
 import subprocess
 import time
@@ -53,6 +52,32 @@ class Deep(TesseraTest):
 
     def test_the_picture_keeps_its_bits(self):
         self.assert_same_bits(self.render(), self.render("--deep", "deep.exr", output="b.exr"))
+
+    def test_the_scene_may_name_the_file(self):
+        self.render("--deep", "asked.exr", "--deterministic-metadata")
+        asked = (self.folder / "asked.exr").read_bytes()
+        (self.folder / "shots").mkdir()
+        named = ("--set", "output.deep=depths.exr", "--deterministic-metadata")
+        self.render(*named, output="shots/a.exr")
+        self.assertEqual((self.folder / "shots" / "depths.exr").read_bytes(), asked)
+        self.render(*named, "--deep", "other.exr", output="shots/b.exr")
+        self.assertEqual((self.folder / "other.exr").read_bytes(), asked)
+        # Of a part it is kept for the merge: parts would overwrite each other's.
+        (self.folder / "shots" / "depths.exr").unlink()
+        self.expect(0, "render", "scene.toml", "-o", "shots/p.tsf", *named)
+        self.assertFalse((self.folder / "shots" / "depths.exr").exists())
+        self.expect(0, "merge", "shots/p.tsf", "-o", "c.exr", "--deep", "merged.exr", "--deterministic-metadata")
+        self.assertEqual((self.folder / "merged.exr").read_bytes(), asked)
+
+    def test_names_in_the_scene_that_cannot_be(self):
+        self.write_scene(DEEP_TOML + '[output]\ndeep = "deep.png"\n')
+        run = self.expect(SCENE, "render", "scene.toml", "-o", "a.exr")
+        self.assertRegex(run.err, r"scene\.toml:\d+:\d+: output: deep is 'deep\.png', must end in \.exr")
+        self.write_scene(DEEP_TOML + '[output]\ndeep = "a.exr"\n')
+        self.assertIn("--output too", self.expect(USAGE, "render", "scene.toml", "-o", "a.exr").err)
+        self.write_scene(DEEP_TOML + '[output]\ndeep = "nowhere/a.exr"\n')
+        self.expect(OUTPUT, "render", "scene.toml", "-o", "a.exr")
+        self.assertEqual([n for n in self.files() if n.endswith(".exr")], [])
 
     def test_threads_and_tiles_make_the_same_file(self):
         for name, args in (("a", ("-t", "1", "--tile", "8")), ("b", ("-t", "2"))):

@@ -277,6 +277,24 @@ class Merge(LongRender):
         self.assertIn("missing are", run.err)
         self.assertEqual(Exr(self.folder / "some.exr").text("tessera/partial"), 1)
 
+    def test_what_lacks_its_first_samples_or_its_frame_is_partial(self):
+        args = ("render", "scene.toml", "--aov", "Z", "-q")
+        self.expect(0, *args, "--samples", "4:8", "-o", "late.tsf")
+        self.expect(0, *args, "--samples", "0:8", "--crop", "0,0,20,32", "-o", "left.tsf")
+        self.expect(0, *args, "--samples", "0:8", "--crop", "20,0,40,32", "-o", "middle.tsf")
+        self.expect(0, *args, "--samples", "0:8", "--crop", "40,0,48,32", "-o", "right.tsf")
+        for parts, partial, window in (
+            (("late.tsf",), 1, (0, 0, 47, 31)),
+            (("left.tsf", "middle.tsf"), 1, (0, 0, 39, 31)),
+            (("left.tsf", "middle.tsf", "right.tsf"), None, (0, 0, 47, 31)),
+            (("middle.tsf",), None, (20, 0, 39, 31)),  # a crop that was asked for
+        ):
+            run = self.merge(*parts, "-o", "some.exr", "--allow-partial")
+            exr = Exr(self.folder / "some.exr")
+            self.assertEqual(exr.attributes.get("tessera/partial") and exr.text("tessera/partial"), partial, parts)
+            self.assertEqual("missing are" in run.err, partial == 1, parts)
+            self.assertEqual(exr.data_window, window)
+
     def test_an_unfinished_part_is_named(self):
         args = ("--res", "96x64", "--samples", "0:4000")
         process = self.begin(*self.render_args("a.tsf", *args, "--checkpoint", "a.tsf", "--checkpoint-every", "0.2"),

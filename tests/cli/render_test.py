@@ -135,6 +135,22 @@ class Options(TesseraTest):
         self.assertLess(run.seconds, 15 * SLOWDOWN)
         self.assertEqual(Exr(self.folder / "out.exr").size, (48, 32))
 
+    def test_time_is_used_and_kept_writing_included(self):
+        # A bound on overrun on a busy machine; the plan's own 3 % are a unit test's.
+        for size in ("48x32", "640x360"):
+            run = self.expect(0, "render", "scene.toml", "-o", "out.exr", "--res", size, "--time", "3", "--stats", "-")
+            seconds = json.loads(run.out)["seconds"]
+            self.assertLess(seconds["render"] + seconds["write"], 3 * 1.1 + 0.5 * SLOWDOWN, size)
+            self.assertGreater(seconds["render"] + seconds["write"], 3 * 0.8 - 0.5, size)
+            self.assertEqual(self.files_like("trial"), [])
+
+    def test_the_samples_that_a_time_allowed_have_the_bits_of_so_many_asked_for(self):
+        timed = self.render("--time", "0.3", "--float")
+        self.assert_same_bits(timed, self.render("--spp", str(timed.text("tessera/spp")), "--float", output="b.exr"))
+
+    def files_like(self, word):
+        return [name for name in self.files() if word in name]
+
     def test_bare_obj_renders_under_a_sky_and_says_so(self):
         run = self.expect(0, "render", "triangles.obj", "-o", "out.exr", "--res", "48x32", "--spp", "2")
         self.assertIn("sky", (run.err + run.out).lower())

@@ -72,6 +72,22 @@ class Snapshot(TesseraTest):
         self.assertNotIn("tessera/partial", final.attributes)
         self.assert_same_bits(undisturbed, final)
 
+    def test_of_a_part_it_is_a_part(self):
+        for checkpoint in ((), ("--checkpoint", "a.tsf")):
+            process = self.start(*ENDLESS, *checkpoint, output="a.tsf")
+            process.send_signal(signal.SIGUSR1)
+            self.wait_for_line(process, "snapshot written")
+            deadline = time.monotonic() + TIMEOUT
+            while not (self.folder / "a.tsf").exists():  # a checkpoint is written by the way
+                self.assertLess(time.monotonic(), deadline)
+                time.sleep(0.01)
+            self.assertIsNone(process.poll())
+            process.kill()
+            process.wait()
+            self.expect(0, "merge", "a.tsf", "-o", "so_far.exr", "--allow-partial")
+            self.assertGreater(max(Exr(self.folder / "so_far.exr").values("G")), 0.01)
+            (self.folder / "a.tsf").unlink()
+
     def test_one_that_cannot_be_written_is_a_warning(self):
         (self.folder / "shelf").mkdir()
         process = self.start(*ENDLESS, output="shelf/out.exr")

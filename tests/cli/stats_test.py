@@ -1,6 +1,7 @@
 """--stats: the file is JSON, fits its schema, and its numbers agree with the scene."""
 
 import json
+import re
 import unittest
 
 from support import SCENE_TOML, SOURCE, TesseraTest
@@ -89,6 +90,27 @@ class Stats(TesseraTest):
         self.write("bad.toml", "tessera = 1\n[camera\n")
         self.expect(3, "render", "bad.toml", "-o", "out.exr", "--stats", "stats.json")
         self.assertEqual(self.files(), ["bad.toml"])
+
+
+class FilmMemory(TesseraTest):
+    """What docs/performance.md states of many passes at once; one sample is enough, films do not grow by more."""
+
+    def test_forty_passes_at_1280x720_take_what_is_stated_and_foretold(self):
+        passes = [word for name in ("compositing", "lookdev", "light_groups", "variance") for word in ("--aov", name)]
+        run = self.expect(
+            0, "render", SOURCE / "scenes" / "compositing" / "compositing.toml", "-o", "out.exr", "--res", "1280x720",
+            "--spp", "1", "--compression", "none", "--stats", "s.json", *passes, timeout=120,
+        )  # fmt: skip
+        memory = json.loads((self.folder / "s.json").read_text())["memory_bytes"]
+        count, mib = re.search(r"^film +1280x720, beauty and (\d+) passes, ([0-9.]+) MiB$", run.err, re.MULTILINE).groups()
+        self.assertGreaterEqual(int(count), 40)
+        # Edges between things are not foreseen; a log line has one digit after the point.
+        self.assertLessEqual(float(mib), memory["film"] / 2**20 + 0.1)
+        self.assertGreaterEqual(float(mib), 0.99 * memory["film"] / 2**20)
+        stated = re.search(r"Fifty layers at once at 1280×720.*?film ([0-9.]+) GB, process ([0-9.]+) GB",
+                           (SOURCE / "docs" / "performance.md").read_text(), re.DOTALL)  # fmt: skip
+        self.assertLessEqual(memory["film"], 1.01e9 * float(stated[1]))
+        self.assertLessEqual(memory["peak"], 1.1e9 * float(stated[2]))
 
 
 if __name__ == "__main__":

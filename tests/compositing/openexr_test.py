@@ -47,6 +47,7 @@ class OpenExr(StillLifeTest):
         self.assertEqual(layers.pop(""), {"R": "half", "G": "half", "B": "half", "A": "half", "Z": "float"})
         for name in (*LIGHT, *GROUPS):
             self.assertEqual(layers.pop(name), {"R": "half", "G": "half", "B": "half"}, name)
+        self.assertLessEqual({"N", "variance", "albedo"}, set(self.documented))  # else nothing is compared below
         for name, channels in layers.items():
             kind = "half" if "albedo" in name or name in LIGHT or set(channels) == set("RGB") and name != "variance" else "float"
             self.assertEqual(set(channels.values()), {kind}, name)
@@ -91,6 +92,7 @@ class OpenExr(StillLifeTest):
         self.assertEqual(set(picture.channels), set("RGB"))
         self.assertEqual((picture["tessera/pass"], picture["tessera/channels"]), ("N", "X,Y,Z"))
         self.assertEqual(set(self.parts("s_beauty.exr")[0].channels), set("RGBA"))
+        self.assertEqual(len(list(self.folder.glob("s_Crypto*.exr"))), 3)
         for file in self.folder.glob("s_*.exr"):
             (picture,) = self.parts(file.name)
             mattes = {picture[key] for key in picture.attributes if key.endswith("/name")}

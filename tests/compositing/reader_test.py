@@ -41,7 +41,9 @@ class Reader(StillLifeTest):
         for codec, options in LAYOUTS.items():
             self.render("mattes.exr", *ALL, *options)
             file = File(self.folder / "mattes.exr")
-            for kind, matte in file.cryptomattes().items():
+            mattes = file.cryptomattes()
+            self.assertEqual(set(mattes), {"CryptoObject", "CryptoMaterial", "CryptoAsset"})
+            for kind, matte in mattes.items():
                 self.assertEqual(check(file, matte, 1e-6), [], f"{codec} {kind}")
 
     def test_light_through_mattes_is_all_light(self):

@@ -3,8 +3,10 @@
 
 #include <atomic>
 #include <filesystem>
+#include <optional>
 
 #include "renderer/film/film_file.h"
+#include "renderer/integrator/checkpoints.h"
 #include "tests/support/temp_folder.h"
 #include "tests/support/test_scenes.h"
 
@@ -147,6 +149,49 @@ TEST_CASE(
     CHECK(result.stats.checkpoints_failed > 1);
     CHECK(warnings.size() == 1);  // the same again is not told again
     CHECK(same(result.image.layers, whole));
+}
+
+TEST_CASE(
+    "resume: checkpoints are as rare as keeps their cost below 1 %, but a minute apart at least") {
+    CHECK(checkpoint_interval(0.1, 0.2, 2) == 60);
+    CHECK(checkpoint_interval(1, 4, 2) == 300);  // 1 s of all, 4 s of one of two
+    RenderSettings settings;
+    const TempFolder folder;
+    settings.checkpoint = folder / "c.tsf";
+    CHECK(render(*scene(1), settings).stats.checkpoint_every_s == 60);
+    settings.checkpoint_s = 0.5;
+    CHECK(render(*scene(1), settings).stats.checkpoint_every_s == 0.5);
+}
+
+TEST_CASE("resume: the picture so far of a part is a part, and the render goes on") {
+    const TempFolder folder;
+    const ScenePtr s = scene();
+    for (const char* checkpoint : {"", "a.tsf", "none/c.tsf"}) {
+        INFO(checkpoint);
+        RenderSettings settings;
+        settings.film_file = folder / "a.tsf";
+        if (*checkpoint != 0) settings.checkpoint = folder / checkpoint;
+        settings.tile = 8;
+        std::atomic<bool> wanted{false};
+        std::atomic<int> tiles{0};
+        settings.snapshot = &wanted;
+        settings.on_tile = [&](const PixelWindow&, const std::vector<Layer>&) {
+            if (++tiles == 40) wanted = true;
+        };
+        std::optional<FilmHeader> there;
+        settings.on_snapshot = [&](RenderResult&&) {
+            if (settings.checkpoint != settings.film_file)
+                there = read_film_header(settings.film_file);
+        };
+        render(*s, settings);
+        if (settings.checkpoint != settings.film_file) {
+            REQUIRE(there);
+            CHECK(there->most > 0);
+            CHECK(there->least < kSpp);
+        }
+        CHECK(read_film_header(settings.film_file).least == kSpp);
+        std::filesystem::remove(settings.film_file);
+    }
 }
 
 TEST_CASE("resume: a film of another render is refused before anything is traced") {

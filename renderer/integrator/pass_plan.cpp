@@ -1,0 +1,40 @@
+#include "renderer/integrator/pass_plan.h"
+
+#include <algorithm>
+
+namespace tessera {
+namespace {
+
+constexpr double kShare = 0.5;     // of the time left, for one pass
+constexpr double kSlower = 1.25;   // than those before a sample may be
+constexpr double kEnough = 0.005;  // so little of the time may be left over
+constexpr double kMemory = 0.25;   // weight of a pass against the next one
+constexpr int kGrowth = 4;
+
+}  // namespace
+
+int PassPlan::next(int done, double elapsed_s) const {
+    const int rest = spp_ - done;
+    if (rest <= 0) return 0;
+    if (time_s_ > 0) return std::min(affordable(elapsed_s), rest);
+    int end = 1;
+    while (end <= done) end = kGrowth * end + 1;
+    return std::min(end - done, rest);
+}
+
+int PassPlan::affordable(double elapsed_s) const {
+    if (taken_ == 0) return 1;
+    const double left = time_s_ - elapsed_s, each = std::max(seconds_ / samples_, 1e-12);
+    if (left < kEnough * time_s_) return 0;
+    const double count = std::min(kShare * left / each, static_cast<double>(kGrowth) * taken_);
+    if (count >= 1) return static_cast<int>(std::min(count, 1e9));
+    return kSlower * each <= left + kLate * time_s_ ? 1 : 0;
+}
+
+void PassPlan::took(int samples, double seconds) {
+    taken_ += samples;
+    samples_ = kMemory * samples_ + samples;
+    seconds_ = kMemory * seconds_ + seconds;
+}
+
+}  // namespace tessera
