@@ -45,7 +45,6 @@ public:
           checkpoints_(settings.checkpoint, settings.checkpoint_s, settings.warn) {}
 
     RenderResult run() {
-        start_ = Clock::now();
         const int spp = scene_.settings().spp;
         int done = static_cast<int>(sample_range(film_).least);
         resumed_ = done;
@@ -262,6 +261,7 @@ private:
         return image;
     }
 
+    Clock::time_point start_ = Clock::now();  // before the film, which takes a while to make
     const Scene& scene_;
     const RenderSettings& settings_;
     PixelWindow window_;
@@ -274,7 +274,6 @@ private:
     BlockKernel kernel_;
     std::vector<PixelWindow> tiles_;
     Workers workers_;
-    Clock::time_point start_;
     std::atomic<bool> stopped_{false};
     std::mutex mutex_;
     Counters counters_;
