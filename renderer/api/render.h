@@ -61,7 +61,8 @@ struct Statistics {
     int resumed_spp = 0;   // of spp, those of earlier runs
     double resumed_s = 0;  // that these took
     int checkpoints = 0, checkpoints_failed = 0;
-    double checkpoint_s = 0;  // for which the workers rested
+    bool checkpoint_saved = false;  // the last one, with all samples
+    double checkpoint_s = 0;        // for which the workers rested
     std::uint64_t seed = 0;
     double load_s = 0, build_s = 0, render_s = 0, write_s = 0;
     RayCounts rays;

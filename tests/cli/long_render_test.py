@@ -6,11 +6,12 @@ import random
 import resource
 import signal
 import subprocess
+import textwrap
 import time
 import unittest
 
 from exr import Exr
-from support import OUTPUT, PARTIAL, SCENE, SLOWDOWN, USAGE, TesseraTest, command
+from support import OUTPUT, PARTIAL, SCENE, SLOWDOWN, TRIANGLES_OBJ, USAGE, TesseraTest, command
 
 # Every kind of pass but the seconds, which are never the same.
 PASSES = [
@@ -268,6 +269,10 @@ class Merge(LongRender):
         self.expect(0, *small, "--samples", "4:8", "-o", "b.tsf", "--crop", "0,0,48,20")
         self.refuse("a.tsf", "b.tsf", text="missing are samples 4:8 of pixels 0,20,48,32")
         self.refuse("a.tsf", "--spp", "9", text="missing are samples 4:9")
+        self.expect(0, *small, "--samples", "0:4", "-o", "a.tsf", "--aov", "CryptoObject")
+        (self.folder / "triangles.obj").write_text(textwrap.dedent(TRIANGLES_OBJ).replace("o fin", "o shark"))
+        self.expect(0, *small, "--samples", "4:8", "-o", "b.tsf", "--aov", "CryptoObject")
+        self.refuse("a.tsf", "b.tsf", text="hash of the scene")
         self.refuse("scene.toml", text="no Tessera film file")
         self.expect(0, *small, "-o", "c.exr")
         self.refuse("a.tsf", "c.exr", text="is a picture")
@@ -320,6 +325,15 @@ class FullDisk(LongRender):
         )
         self.check(run.err, "c.tsf")
 
+    def test_a_part_that_is_its_own_checkpoint_ends_whole_while_one_is_written(self):
+        args = ("--res", "500x500", "--spp", "3", "-q", "--checkpoint-every")
+        for number in range(8):
+            self.expect(
+                0, "render", "scene.toml", "-o", "p.tsf", "--checkpoint", "p.tsf", *args, f"{0.01 + 0.01 * number}"
+            )
+            self.expect(0, "merge", "p.tsf", "--spp", "3", "-o", "out.exr", "-q")
+            (self.folder / "p.tsf").unlink()
+
     @unittest.skipUnless(hasattr(os, "geteuid") and os.geteuid() == 0, "only root mounts a small disk")
     def test_a_disk_with_room_for_one_keeps_it(self):
         disk = self.folder / "disk"
@@ -335,6 +349,10 @@ class FullDisk(LongRender):
             run = self.expect(OUTPUT, *self.render_args("disk/out.exr", "--res", "300x300", "--checkpoint", "big.tsf"))
             self.assertIn("disk/out.exr: cannot write", run.err)
             self.assertIn("--resume big.tsf writes the picture", run.err)
+            run = self.expect(OUTPUT, *self.render_args("disk/out.exr", "--res", "300x300", "--checkpoint", "disk/b.tsf"))
+            self.assertEqual(os.listdir(disk), ["c.tsf"])
+            self.assertIn("disk/b.tsf could not be written either", run.err)
+            self.assertNotIn("writes the picture", run.err)
             run = self.expect(OUTPUT, *self.render_args("disk/part.tsf", "--res", "300x300"))
             self.assertIn("disk/part.tsf: cannot write", run.err)
             self.assertEqual(os.listdir(disk), ["c.tsf"])
