@@ -73,6 +73,19 @@ tessera::Error unknown_command(const std::string& word) {
                 "--help)"};
 }
 
+// An empty value is most often a script's empty variable: --checkpoint "$FILE" must not be no
+// checkpoint.
+void refuse_empty_values(CLI::App& app) {
+    const auto check = [](const std::string& text) {
+        return text.empty() ? "the value is empty" : std::string();
+    };
+    for (CLI::App* command : app.get_subcommands({})) {
+        for (CLI::Option* option : command->get_options()) {
+            if (option->get_type_size() > 0) option->check(check);
+        }
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -104,6 +117,7 @@ int main(int argc, char** argv) {
     tessera::add_flatten(app, line);
     tessera::add_version(app, line);
     tessera::add_schema(app, line);
+    refuse_empty_values(app);
 
     try {
         app.parse(argc, argv);
@@ -112,6 +126,8 @@ int main(int argc, char** argv) {
             return report(unknown_command(app.remaining().front()));
         const int code = app.exit(e);
         return code == 0 ? 0 : static_cast<int>(tessera::ExitCode::usage);
+    } catch (const tessera::Error& e) {
+        return report(e);
     }
     try {
         return line.run ? line.run() : 0;
