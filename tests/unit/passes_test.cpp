@@ -257,8 +257,7 @@ TEST_CASE("passes: under an even sky glass shows its albedos, of reflection and 
 
 TEST_CASE("passes: where a lobe shines its albedo is not nothing") {
     const Layers layers = layers_of(all_lobes(), {"lookdev"});
-    for (const std::string lobe :
-         {"diffuse", "specular", "coat", "transmission", "sss", "sheen"}) {
+    for (const std::string lobe : {"diffuse", "specular", "coat", "transmission", "sss", "sheen"}) {
         const std::vector<float>& light = layers.at(lobe);
         const std::vector<float>& albedo = layers.at(lobe + "_albedo");
         int lit = 0, without = 0;
