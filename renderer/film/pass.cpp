@@ -164,7 +164,7 @@ struct Chooser {
         if (it == out.end() && out.size() >= kMostPasses)
             fail("more than " + std::to_string(kMostPasses) + " passes");
         if (it == out.end()) return out.push_back(std::move(pass));
-        if (it->expression != pass.expression)
+        if (it->expression != pass.expression || it->group != pass.group)
             fail("pass '" + pass.name + "' is there twice, with different expressions");
     }
 

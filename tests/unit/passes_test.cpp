@@ -332,6 +332,7 @@ TEST_CASE("passes: names that are none are refused with the nearest") {
     says("beauty = C.*L", "there already");
     says("CryptoObject00 = C.*L", "Cryptomatte");
     CHECK(complaint({"mine = CL", "mine = CO"}).find("twice") != std::string::npos);
+    CHECK(complaint({"RGBA_key = C.*[LOB]", "light_groups"}).find("twice") != std::string::npos);
     CHECK(complaint({"mine = CL", "mine = CL", "Z", "Z"}).empty());
     CHECK(choose_passes({}, {"default"}, {}).size() == 4);
     CHECK(choose_passes({"beauty"}, {"default"}, {}).empty());
