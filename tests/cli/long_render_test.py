@@ -250,6 +250,13 @@ class Merge(LongRender):
             self.assertIn(part, run.err)
         self.assertFalse((self.folder / "no.exr").exists())
 
+    def test_of_another_scene_that_is_said_and_not_its_names(self):
+        args = ("render", "scene.toml", "--aov", "CryptoObject", "-q", "--samples")
+        self.expect(0, *args, "0:4", "-o", "a.tsf")
+        (self.folder / "triangles.obj").write_text(textwrap.dedent(TRIANGLES_OBJ).replace("o fin", "o shark"))
+        self.expect(0, *args, "4:8", "-o", "b.tsf")
+        self.refuse("a.tsf", "b.tsf", text="hash of the scene")
+
     def test_what_does_not_belong_together(self):
         small = ("render", "scene.toml", "--aov", "Z", "-q")
         self.expect(0, *small, "--samples", "0:4", "-o", "a.tsf")
@@ -269,10 +276,6 @@ class Merge(LongRender):
         self.expect(0, *small, "--samples", "4:8", "-o", "b.tsf", "--crop", "0,0,48,20")
         self.refuse("a.tsf", "b.tsf", text="missing are samples 4:8 of pixels 0,20,48,32")
         self.refuse("a.tsf", "--spp", "9", text="missing are samples 4:9")
-        self.expect(0, *small, "--samples", "0:4", "-o", "a.tsf", "--aov", "CryptoObject")
-        (self.folder / "triangles.obj").write_text(textwrap.dedent(TRIANGLES_OBJ).replace("o fin", "o shark"))
-        self.expect(0, *small, "--samples", "4:8", "-o", "b.tsf", "--aov", "CryptoObject")
-        self.refuse("a.tsf", "b.tsf", text="hash of the scene")
         self.refuse("scene.toml", text="no Tessera film file")
         self.expect(0, *small, "-o", "c.exr")
         self.refuse("a.tsf", "c.exr", text="is a picture")

@@ -114,12 +114,16 @@ class Usage(TesseraTest):
             ("--crop", "9,0,8,8"),
             ("--tile", "-8"),
             ("--seed", "x"),
+            ("--seed", "-1"),
+            ("--seed", "18446744073709551616"),
+            ("--dwa-level", "nan"),
+            ("--checkpoint=c.tsf --checkpoint-every", "nan"),
             ("--kernel", "warp"),
             ("--set", "camera"),
         ]
         for option, value in bad:
             with self.subTest(option=option, value=value):
-                self.refuse("render", "scene.toml", "-o", "out.exr", f"{option}={value}")
+                self.refuse("render", "scene.toml", "-o", "out.exr", *f"{option}={value}".split())
 
     def test_empty_values(self):
         self.write_scene()
