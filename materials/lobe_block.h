@@ -171,14 +171,20 @@ public:
         });
         return event;
     }
-    /// As albedo(), by event; what lets light through counts whole as that.
+    /// As albedo(), by event.
     EventColors albedos(int lane) const noexcept {
         EventColors out;
         each_kind([&](const auto& kind) {
             using Model = typename std::remove_cvref_t<decltype(kind)>::Kind;
-            if (kind.chance[lane] > 0.0f)
-                out[event_of<Model>(true)] +=
-                    kind.weight[lane] * kind.model.get(lane).albedo(wo[lane]);
+            if (!(kind.chance[lane] > 0.0f)) return;
+            const Model model = kind.model.get(lane);
+            Color through = model.albedo(wo[lane]);
+            if constexpr (lobe_events::kThrough<Model>) {
+                const Color reflected = model.reflected_albedo(wo[lane]);
+                out[event_of<Model>(false)] += kind.weight[lane] * reflected;
+                through = through - reflected;
+            }
+            out[event_of<Model>(true)] += kind.weight[lane] * through;
         });
         return out;
     }

@@ -100,6 +100,8 @@ struct RoughGlass {
     }
     float spread() const { return 0.25f * std::max(m.ggx.ax, m.ggx.ay); }
     Color albedo(Vec3f wo) const { return m.glass.shared(m.glass.fresnel(wo.z)); }
+    /// What of albedo() does not go through; so of the others.
+    Color reflected_albedo(Vec3f wo) const { return m.glass.reflect_tint * m.glass.fresnel(wo.z); }
 };
 
 /// Two parallel boundaries with nothing between, all bounces between them summed: the reflected
@@ -146,6 +148,9 @@ struct RoughSheet {
     }
     float spread() const { return 0.25f * std::max(m.ggx.ax, m.ggx.ay); }
     Color albedo(Vec3f wo) const { return m.glass.shared(of_both(m.glass.fresnel(wo.z))); }
+    Color reflected_albedo(Vec3f wo) const {
+        return m.glass.reflect_tint * of_both(m.glass.fresnel(wo.z));
+    }
 };
 
 /// A smooth boundary, or a sheet of two: both share light out alike, but a sheet lets it straight
@@ -174,6 +179,7 @@ struct SmoothBoundary {
         if (min_component(f) < 1.0f) child(through(wo, Color(1.0f) - f));
     }
     Color albedo(Vec3f wo) const { return glass.shared(reflectance(wo)); }
+    Color reflected_albedo(Vec3f wo) const { return glass.reflect_tint * reflectance(wo); }
 
 private:
     Color reflectance(Vec3f wo) const {

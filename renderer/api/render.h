@@ -61,6 +61,7 @@ struct Statistics {
     int resumed_spp = 0;   // of spp, those of earlier runs
     double resumed_s = 0;  // that these took
     int checkpoints = 0, checkpoints_failed = 0;
+    bool checkpoint_saved = false;  // the last one, with all samples
     double checkpoint_s = 0;        // for which the workers rested
     double checkpoint_every_s = 0;  // from one to the next
     std::uint64_t seed = 0;

@@ -21,9 +21,21 @@ struct FlattenOptions {
     bool all_float = false, quiet = false;
 };
 
+// Flat light has no depths any more.
+void check_spares(const FlattenOptions& o) {
+    for (const std::string& file : o.files) {
+        std::error_code none;
+        if (std::filesystem::equivalent(file, o.output, none))
+            throw Error(ExitCode::usage, "--output " + o.output +
+                                             ": would replace one of the deep files; give another "
+                                             "name");
+    }
+}
+
 int run_flatten(const FlattenOptions& o) {
     set_log_level(o.quiet ? LogLevel::quiet : LogLevel::normal);
     check_outputs({{o.output, "--output", {".exr"}}});
+    check_spares(o);
     LayeredImage image = flatten_deep_exr(o.files);
     image.metadata.emplace_back("tessera/version", std::string(TESSERA_VERSION));
     image.metadata.emplace_back("tessera/colorSpace", image.working_space);

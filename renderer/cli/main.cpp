@@ -3,8 +3,12 @@
 #include <unistd.h>
 #include <CLI/CLI.hpp>
 
+#include <charconv>
+#include <cmath>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <system_error>
@@ -73,6 +77,32 @@ tessera::Error unknown_command(const std::string& word) {
                 "--help)"};
 }
 
+// An empty value is most often a script's empty variable: --checkpoint "$FILE" must not be no
+// checkpoint. What is no number is within every range, and negative counts wrap around.
+void refuse_what_is_no_value(CLI::App& app) {
+    const auto is_there = [](const std::string& text) {
+        return text.empty() ? "the value is empty" : std::string();
+    };
+    const auto is_number = [](const std::string& text) {
+        return std::isnan(std::strtod(text.c_str(), nullptr)) ? text + " is no number"
+                                                              : std::string();
+    };
+    const auto is_count = [](const std::string& text) {
+        std::uint64_t n = 0;
+        const char* const end = text.data() + text.size();
+        const auto [stop, code] = std::from_chars(text.data(), end, n);
+        return code == std::errc() && stop == end ? std::string()
+                                                  : text + " is not in 0 to 18446744073709551615";
+    };
+    for (CLI::App* command : app.get_subcommands({})) {
+        for (CLI::Option* option : command->get_options()) {
+            if (option->get_type_size() > 0) option->check(is_there);
+            if (option->get_type_name().starts_with("FLOAT")) option->check(is_number);
+            if (option->get_type_name().starts_with("UINT")) option->check(is_count);
+        }
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -104,6 +134,7 @@ int main(int argc, char** argv) {
     tessera::add_flatten(app, line);
     tessera::add_version(app, line);
     tessera::add_schema(app, line);
+    refuse_what_is_no_value(app);
 
     try {
         app.parse(argc, argv);
@@ -112,6 +143,8 @@ int main(int argc, char** argv) {
             return report(unknown_command(app.remaining().front()));
         const int code = app.exit(e);
         return code == 0 ? 0 : static_cast<int>(tessera::ExitCode::usage);
+    } catch (const tessera::Error& e) {
+        return report(e);
     }
     try {
         return line.run ? line.run() : 0;

@@ -10,6 +10,15 @@ namespace tessera {
 namespace {
 
 constexpr std::string_view kPrefix = "cryptomatte/", kManifest = "/manifest";
+constexpr std::string_view kPlaceholder = "<aov>";
+
+// Beside the file that it belongs to.
+std::filesystem::path manifest_path(std::string output, const std::string& type) {
+    const std::size_t at = output.find(kPlaceholder);
+    if (at != std::string::npos) output.replace(at, kPlaceholder.size(), type);
+    return std::filesystem::path(output).replace_extension(
+        at == std::string::npos ? "." + type + ".json" : ".json");
+}
 
 }  // namespace
 
@@ -23,8 +32,8 @@ std::vector<ManifestFile> move_manifests(
             return other.first == key + "/name";
         });
         if (type == metadata.end()) continue;
-        std::filesystem::path path(output);
-        path.replace_extension("." + std::get<std::string>(type->second) + ".json");
+        const std::filesystem::path path =
+            manifest_path(output, std::get<std::string>(type->second));
         files.push_back({path.string(), std::move(std::get<std::string>(value))});
         name = key + "/manif_file";
         value = path.filename().string();

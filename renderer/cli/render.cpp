@@ -213,8 +213,12 @@ WriteReport write_picture(const Snapshots::Write& write, RenderResult& result,
         return write(result);
     } catch (const Error& e) {
         if (checkpoint.empty() || e.code() != ExitCode::output) throw;
-        throw Error(e.code(), std::string(e.what()) + "\nthe samples are in " + checkpoint +
-                                  ": --resume " + checkpoint + " writes the picture");
+        const std::string fate =
+            result.stats.checkpoint_saved
+                ? "the samples are in " + checkpoint + ": --resume " + checkpoint +
+                      " writes the picture"
+                : checkpoint + " could not be written either and lacks the last samples";
+        throw Error(e.code(), std::string(e.what()) + "\n" + fate);
     }
 }
 
@@ -284,7 +288,7 @@ int run_render(RenderOptions options, const std::string& command) {
     log_info(fmt::format("wrote    {} ({:.1f} MiB, {:.2f} s), peak memory {} MiB{}",
                          names(written.files), static_cast<double>(written.bytes) / (1 << 20),
                          s.write_s, s.memory_peak >> 20, result.complete ? "" : ", partial"));
-    if (!result.complete && !options.runs.checkpoint.empty())
+    if (!result.complete && s.checkpoint_saved)
         log_info("note: --resume " + options.runs.checkpoint + " goes on from here");
     if (display) display->close();
     return static_cast<int>(result.complete ? ExitCode::done : ExitCode::checkpoint);

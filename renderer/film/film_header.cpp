@@ -235,12 +235,14 @@ std::optional<FilmDifference> difference(const FilmHeader& a, const FilmHeader& 
     if (const auto d = unequal("resolution", size(a), size(b))) return d;
     if (const auto d = unequal("seed", std::to_string(a.seed), std::to_string(b.seed))) return d;
     if (const auto d = pass_difference(a.passes, b.passes)) return d;
-    if (a.ids != b.ids) return FilmDifference{"names for mattes", "others", "others"};
     const auto depths = [](const FilmHeader& h) { return h.deep ? "kept" : "not kept"; };
     if (a.deep != b.deep) return FilmDifference{"set of depths (--deep)", depths(a), depths(b)};
     if (const auto d = unequal("working space", a.working_space, b.working_space)) return d;
     if (const auto d = unequal("instruction set (--isa)", a.isa, b.isa)) return d;
-    return unequal("hash of the scene and its files", a.scene_hash, b.scene_hash);
+    if (const auto d = unequal("hash of the scene and its files", a.scene_hash, b.scene_hash))
+        return d;
+    if (a.ids != b.ids) return FilmDifference{"names for mattes", "others", "others"};
+    return std::nullopt;
 }
 
 }  // namespace tessera

@@ -32,8 +32,10 @@ private:
     };
 
     [[noreturn]] void fail(const std::string& what) const {
+        constexpr std::size_t kShown = 200;
+        const std::string shown = text_.size() <= kShown ? text_ : text_.substr(0, kShown) + " ...";
         throw Error(ExitCode::usage, loc_,
-                    "light path expression '" + text_ + "', character " + std::to_string(at_ + 1) +
+                    "light path expression '" + shown + "', character " + std::to_string(at_ + 1) +
                         ": " + what);
     }
     char peek() {

@@ -35,6 +35,10 @@ public:
         return {taken_.data() + first_[i], taken_.data() + first_[i + 1]};
     }
 
+    /// Whether any path of light at all is the pass's: false for an expression that has no light in
+    /// the end, say.
+    bool is_taken(int pass) const;
+
 private:
     int passes_ = 0;
     std::size_t tags_ = 1;

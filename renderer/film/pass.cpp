@@ -10,6 +10,7 @@ namespace tessera {
 namespace {
 
 constexpr std::size_t kLongestName = 31;  // what compositors take
+constexpr std::size_t kMostPasses = 1000;
 
 constexpr std::uint32_t bits(std::initializer_list<LobeEvent> events) {
     std::uint32_t b = 0;
@@ -87,10 +88,10 @@ constexpr PassInfo kReady[] = {
      "what is seen there"},
     albedo("diffuse_albedo", bits({E::diffuse}), "of the first surface, diffuse lobes alone"),
     albedo("specular_albedo", bits({E::specular, E::mirror}),
-           "its metal and dielectric reflection"),
+           "its metal and dielectric reflection, that of glass too"),
     albedo("coat_albedo", bits({E::coat, E::coat_mirror}), "its coat"),
     albedo("transmission_albedo", bits({E::transmission, E::clear_transmission}),
-           "of glass its reflection included"),
+           "what glass and thin sheets let through"),
     albedo("sss_albedo", bits({E::sss}), "its subsurface"),
     albedo("sheen_albedo", bits({E::sheen}), "its fuzz"),
 
@@ -161,8 +162,10 @@ struct Chooser {
             return p.name == pass.name && p.channels == pass.channels;
         };
         const auto it = std::find_if(out.begin(), out.end(), same);
+        if (it == out.end() && out.size() >= kMostPasses)
+            fail("more than " + std::to_string(kMostPasses) + " passes");
         if (it == out.end()) return out.push_back(std::move(pass));
-        if (it->expression != pass.expression)
+        if (it->expression != pass.expression || it->group != pass.group)
             fail("pass '" + pass.name + "' is there twice, with different expressions");
     }
 
@@ -204,6 +207,7 @@ struct Chooser {
     }
 
     void split(const std::string& name) {
+        if (name == "beauty") return by_group("RGBA", "C.*[LOB]");
         const PassInfo* info = find(name);
         if (!info) unknown(name);
         if (info->source != S::light_paths)
@@ -224,6 +228,10 @@ struct Chooser {
         if (expression.empty()) fail("pass '" + name + "' has no expression after '='");
         if (find(name)) fail("pass '" + name + "' is a ready one: give yours another name");
         check_name(name);
+        if (name == "beauty" || name == "light_groups")
+            fail("'" + name + "' is what is there already: give yours another name");
+        if (name.starts_with("Crypto"))
+            fail("'" + name + "': names that begin with Crypto are those of Cryptomatte's layers");
         add({name, channels_of("RGB"), kColor, S::light_paths, expression, 0, -1});
     }
 

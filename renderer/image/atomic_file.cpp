@@ -29,6 +29,12 @@ std::string follow(const std::string& path) {
 
 std::string errno_text(int code) { return std::generic_category().message(code); }
 
+// Inodes are used again at once, but what is half written is smaller. (Times change on network
+// disks after closing.)
+std::string identity_of(const struct stat& s) {
+    return std::to_string(s.st_ino) + " " + std::to_string(s.st_size);
+}
+
 bool is_dead(int pid) { return ::kill(pid, 0) != 0 && errno == ESRCH; }
 
 /// Files named prefix + pid whose process is gone.
@@ -111,6 +117,7 @@ std::uint64_t AtomicFile::finish() {
     if (!failure_.empty()) fail_output(target_, failure_);
     struct stat info {};
     if (::fsync(fd_) != 0 || ::fstat(fd_, &info) != 0) fail_output(target_, errno_text(errno));
+    identity_ = identity_of(info);
     const int fd = fd_;
     fd_ = -1;
     if (::close(fd) != 0) fail_output(target_, errno_text(errno));
@@ -118,6 +125,11 @@ std::uint64_t AtomicFile::finish() {
 }
 
 void AtomicFile::commit() {
+    struct stat info {};
+    if (::stat(temp_.c_str(), &info) != 0 || identity_of(info) != identity_) {
+        temp_.clear();
+        fail_output(target_, "another process writes the same file");
+    }
     if (::rename(temp_.c_str(), real_.c_str()) != 0) fail_output(target_, errno_text(errno));
     temp_.clear();
     // The file is in place; a file system that cannot flush folders (some network ones) is no

@@ -29,7 +29,8 @@ public:
 
     /// Flushes to the disk and closes; returns the size. temp_path() may then be read back.
     std::uint64_t finish();
-    /// Renames over the target and flushes the folder. After finish().
+    /// Renames over the target and flushes the folder. After finish(). Fails if a process of the
+    /// same pid (in another container) has taken the temporary's name meanwhile.
     void commit();
 
     const std::string& target() const noexcept { return target_; }
@@ -42,7 +43,8 @@ private:
     std::string temp_;
     int fd_ = -1;
     std::uint64_t position_ = 0;
-    std::string failure_;  // the first one; a later call must not look like success
+    std::string identity_;  // of the temporary, once it is finished
+    std::string failure_;   // the first one; a later call must not look like success
 };
 
 }  // namespace tessera

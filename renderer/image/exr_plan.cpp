@@ -59,13 +59,16 @@ ExrFile plan_single(const LayeredImage& image, const std::string& path,
 }
 
 // Every part but beauty has prefixed names: readers that throw all parts into one namespace must
-// not meet two channels X. Root Z becomes depth.Z, which is what Nuke calls it.
+// not meet two channels X. Root Z becomes depth.Z, which is what Nuke calls it, unless a layer is
+// called so: then Z.Z.
 ExrFile plan_multipart(const LayeredImage& image, const std::string& path,
                        const WriteOptions& options) {
     ExrFile file{path, {}, {}};
+    const bool has_depth = std::any_of(image.layers.begin(), image.layers.end(),
+                                       [](const Layer& l) { return l.name == "depth"; });
     for (const Layer& layer : image.layers) {
         const std::string pass = pass_name(layer);
-        ExrPart part{pass == "Z" ? "depth" : pass, codec_of(layer, options), {}};
+        ExrPart part{pass == "Z" && !has_depth ? "depth" : pass, codec_of(layer, options), {}};
         append(layer, pass == "beauty" ? "" : part.name, options.all_float, part.channels);
         file.parts.push_back(std::move(part));
     }

@@ -99,7 +99,9 @@ void Checkpoints::start(Film& film, FilmHeader header, Workers& workers) {
 void Checkpoints::finish(Film& film, const FilmHeader& header) {
     if (path_.empty()) return;
     stop();
+    const int before = written_;
     write([&] { write_film_file(path_, header, film); });
+    saved_ = written_ > before;
 }
 
 bool Checkpoints::copy(Film& film, Workers& workers) {

@@ -39,6 +39,8 @@ public:
     void hurry();
     /// Copies the film and clears wanted(). Without memory for a copy it writes at once.
     void start(Film& film, FilmHeader header, Workers& workers);
+    /// Waits for the one under way; nothing is wanted afterwards.
+    void stop();
     /// The last one, in this thread. Nothing is wanted afterwards.
     void finish(Film& film, const FilmHeader& header);
 
@@ -47,12 +49,13 @@ public:
     double rested_s() const noexcept { return rested_s_; }
     int written() const noexcept { return written_; }
     int failed() const noexcept { return failed_; }
+    /// Whether finish() wrote.
+    bool saved() const noexcept { return saved_; }
     /// Of the copy.
     std::size_t bytes() const noexcept { return bytes_; }
 
 private:
     void run();
-    void stop();
     bool copy(Film& film, Workers& workers);
     void write(const std::function<void()>& write_file);
 
@@ -63,6 +66,7 @@ private:
     std::atomic<bool> wanted_{false};
     std::atomic<int> written_{0}, failed_{0};
     std::string last_failure_;
+    bool saved_ = false;
     // A copy of the film's arrays, kept from one to the next.
     std::vector<std::unique_ptr<std::byte[]>> memory_;
     std::vector<Film::Array> copies_;

@@ -137,9 +137,17 @@ private:
         return header_;
     }
 
+    // A part that is its own checkpoint is written once.
+    bool is_own_checkpoint() const {
+        return !settings_.film_file.empty() && settings_.checkpoint == settings_.film_file;
+    }
+
     void save() {
         const std::string& file = settings_.film_file;
-        if (settings_.checkpoint != file || file.empty()) checkpoints_.finish(film_, header());
+        if (is_own_checkpoint())
+            checkpoints_.stop();  // the one under way would replace the whole
+        else
+            checkpoints_.finish(film_, header());
         if (!file.empty()) write_film_file(file, header(), film_);
     }
 
@@ -232,6 +240,7 @@ private:
         s.resumed_s = resumed_s_;
         s.checkpoints = checkpoints_.written();
         s.checkpoints_failed = checkpoints_.failed();
+        s.checkpoint_saved = checkpoints_.saved() || is_own_checkpoint();
         s.checkpoint_s = checkpoints_.rested_s();
         s.checkpoint_every_s = settings_.checkpoint.empty() ? 0 : checkpoints_.every_s();
         s.render_s = seconds_since(start_);

@@ -160,6 +160,18 @@ private:
                         "film.aovs: passes of light, shadow and lobes need render.integrator = "
                         "'path'");
         scene_->light_paths_ = LightPaths(scene_->passes_, tags.tags(), loc);
+        warn_of_hopeless_passes(loc);
+    }
+
+    void warn_of_hopeless_passes(const SourceLoc& loc) {
+        int number = 0;
+        for (const Pass& p : scene_->passes_) {
+            if (p.source != PassSource::light_paths) continue;
+            if (!scene_->light_paths_.is_taken(number++) && p.group < 0)
+                problems_.warn(loc, "pass '" + p.name + "': no light can come by '" + p.expression +
+                                        "', it stays black (a path begins with C and ends with "
+                                        "L, O or B)");
+        }
     }
 
     // By the camera that frames what is there before: what it frames in the end is not known yet.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "renderer/core/murmur3.h"
+#include "renderer/core/utf8.h"
 
 namespace tessera {
 namespace {
@@ -69,8 +70,10 @@ double area_scale(const Placement& placed) {
 
 }  // namespace
 
+// As readers see it: the manifest is JSON, and ids are hashes of UTF-8.
 std::uint32_t NameCollector::Names::of(const std::string& name) {
-    const auto [entry, is_new] = index.try_emplace(name, static_cast<std::uint32_t>(areas.size()));
+    const auto [entry, is_new] =
+        index.try_emplace(as_utf8(name), static_cast<std::uint32_t>(areas.size()));
     if (is_new) areas.push_back(-1);
     return entry->second;
 }

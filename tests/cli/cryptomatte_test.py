@@ -96,6 +96,14 @@ class Cryptomatte(TesseraTest):
             self.assertEqual(kind, "float" if name.startswith("Crypto") else "half", name)
         self.assertEqual(sum(name.startswith("CryptoAsset") for name in picture.channels), 12)
 
+    def test_sidecars_of_a_split_picture_stand_beside_their_files(self):
+        self.expect(0, "render", "scene.toml", "-o", "s_<aov>.exr", *PASSES, "--exr", "split", "--crypto-manifest", "sidecar")
+        self.assertIn("s_CryptoObject.exr", self.files())
+        self.assertIn("s_CryptoObject.json", self.files())
+        self.assertFalse([name for name in self.files() if "<" in name])
+        picture = Exr(self.folder / "s_CryptoObject.exr")
+        self.assertIn("s_CryptoObject.json", [picture.text(a) for a in picture.attributes if a.endswith("/manif_file")])
+
     def test_a_sidecar_holds_the_manifest_in_place_of_the_header(self):
         embedded = self.render(*PASSES)
         beside = self.render(*PASSES, "--crypto-manifest", "sidecar", output="beside.exr")

@@ -215,6 +215,12 @@ class BrokenDeep(TesseraTest):
         self.assertRegex(run.err, message)
         self.assertFalse((self.folder / "flat.exr").exists())
 
+    def test_a_deep_file_is_not_replaced_by_its_flat_picture(self):
+        self.render("--deep", "deep.exr", "--spp", "1")
+        before = (self.folder / "deep.exr").read_bytes()
+        self.assertIn("replace one of the deep files", self.expect(USAGE, "flatten", "deep.exr", "-o", "./deep.exr").err)
+        self.assertEqual((self.folder / "deep.exr").read_bytes(), before)
+
     def test_missing_foreign_and_flat_files(self):
         self.refuse("nowhere.exr", message="nowhere.exr")
         self.write("text.exr", "no picture")

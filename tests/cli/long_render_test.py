@@ -6,11 +6,12 @@ import random
 import resource
 import signal
 import subprocess
+import textwrap
 import time
 import unittest
 
 from exr import Exr
-from support import OUTPUT, PARTIAL, SCENE, SLOWDOWN, USAGE, TesseraTest, command
+from support import OUTPUT, PARTIAL, SCENE, SLOWDOWN, TRIANGLES_OBJ, USAGE, TesseraTest, command
 
 # Every kind of pass but the seconds, which are never the same.
 PASSES = [
@@ -249,6 +250,13 @@ class Merge(LongRender):
             self.assertIn(part, run.err)
         self.assertFalse((self.folder / "no.exr").exists())
 
+    def test_of_another_scene_that_is_said_and_not_its_names(self):
+        args = ("render", "scene.toml", "--aov", "CryptoObject", "-q", "--samples")
+        self.expect(0, *args, "0:4", "-o", "a.tsf")
+        (self.folder / "triangles.obj").write_text(textwrap.dedent(TRIANGLES_OBJ).replace("o fin", "o shark"))
+        self.expect(0, *args, "4:8", "-o", "b.tsf")
+        self.refuse("a.tsf", "b.tsf", text="hash of the scene")
+
     def test_what_does_not_belong_together(self):
         small = ("render", "scene.toml", "--aov", "Z", "-q")
         self.expect(0, *small, "--samples", "0:4", "-o", "a.tsf")
@@ -338,6 +346,15 @@ class FullDisk(LongRender):
         )
         self.check(run.err, "c.tsf")
 
+    def test_a_part_that_is_its_own_checkpoint_ends_whole_while_one_is_written(self):
+        args = ("--res", "500x500", "--spp", "3", "-q", "--checkpoint-every")
+        for number in range(8):
+            self.expect(
+                0, "render", "scene.toml", "-o", "p.tsf", "--checkpoint", "p.tsf", *args, f"{0.01 + 0.01 * number}"
+            )
+            self.expect(0, "merge", "p.tsf", "--spp", "3", "-o", "out.exr", "-q")
+            (self.folder / "p.tsf").unlink()
+
     @unittest.skipUnless(hasattr(os, "geteuid") and os.geteuid() == 0, "only root mounts a small disk")
     def test_a_disk_with_room_for_one_keeps_it(self):
         disk = self.folder / "disk"
@@ -353,6 +370,10 @@ class FullDisk(LongRender):
             run = self.expect(OUTPUT, *self.render_args("disk/out.exr", "--res", "300x300", "--checkpoint", "big.tsf"))
             self.assertIn("disk/out.exr: cannot write", run.err)
             self.assertIn("--resume big.tsf writes the picture", run.err)
+            run = self.expect(OUTPUT, *self.render_args("disk/out.exr", "--res", "300x300", "--checkpoint", "disk/b.tsf"))
+            self.assertEqual(os.listdir(disk), ["c.tsf"])
+            self.assertIn("disk/b.tsf could not be written either", run.err)
+            self.assertNotIn("writes the picture", run.err)
             run = self.expect(OUTPUT, *self.render_args("disk/part.tsf", "--res", "300x300"))
             self.assertIn("disk/part.tsf: cannot write", run.err)
             self.assertEqual(os.listdir(disk), ["c.tsf"])

@@ -2,9 +2,10 @@
 
 import json
 import os
+import subprocess
 import unittest
 
-from support import SCENE, USAGE, TesseraTest
+from support import OUTPUT, PROGRAM, SCENE, USAGE, TesseraTest
 
 RENDER_OPTIONS = (
     "--output --spp --time --res --crop --threads --tile --seed --set --aov --stats --preview --float --strict --lenient "
@@ -113,12 +114,38 @@ class Usage(TesseraTest):
             ("--crop", "9,0,8,8"),
             ("--tile", "-8"),
             ("--seed", "x"),
+            ("--seed", "-1"),
+            ("--seed", "18446744073709551616"),
+            ("--dwa-level", "nan"),
+            ("--checkpoint=c.tsf --checkpoint-every", "nan"),
             ("--kernel", "warp"),
             ("--set", "camera"),
         ]
         for option, value in bad:
             with self.subTest(option=option, value=value):
-                self.refuse("render", "scene.toml", "-o", "out.exr", f"{option}={value}")
+                self.refuse("render", "scene.toml", "-o", "out.exr", *f"{option}={value}".split())
+
+    def test_empty_values(self):
+        self.write_scene()
+        for option in ("--checkpoint", "--resume", "--output", "--crop", "--samples", "--aov", "--overscan", "--view"):
+            with self.subTest(option=option):
+                self.refuse("render", "scene.toml", option, "", saying="is empty")
+
+    def test_standard_output_that_takes_nothing_is_an_output_error(self):
+        with open("/dev/full", "w") as full:
+            for command in (["render", "--list-aovs"], ["exrcheck", "--rules"]):
+                done = subprocess.run([PROGRAM, *command], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
+                self.assertEqual(done.returncode, OUTPUT, done.stderr)
+                self.assertIn("standard output: cannot write", done.stderr)
+                self.assertNotIn("internal", done.stderr)
+
+    def test_pass_that_no_light_can_reach_is_warned_of(self):
+        self.write_scene()
+        run = self.expect(0, "render", "scene.toml", "-o", "out.exr", "--res", "8x8", "--spp", "1", "--aov", "mine = C<RD>T+")
+        self.assertIn("warning: --aov: pass 'mine': no light can come by 'C<RD>T+', it stays black", run.err)
+        (self.folder / "out.exr").unlink()
+        run = self.run_program("render", "scene.toml", "-o", "out.exr", "--strict", "--aov", "mine = C<RD>T+")
+        self.assertEqual(run.code, SCENE, run)
 
     def test_unknown_pass_is_refused_with_the_known_ones(self):
         self.write_scene()

@@ -93,6 +93,21 @@ TEST_CASE("exr files: every lossless codec brings all bits back") {
     }
 }
 
+TEST_CASE("exr files: depth of both kinds fits into one multi-part file") {
+    LayeredImage image = make_picture();
+    Layer filtered = find_layer(image, "Z");
+    filtered.name = "depth";
+    image.layers.push_back(filtered);
+    const TempFolder folder;
+    write_exr(image, folder / "a.exr", in(ExrLayout::multipart, ExrCompression::zip));
+    const RawExr file = read_raw_exr(folder / "a.exr");
+    REQUIRE(file.damage.empty());
+    REQUIRE(file.parts.size() == 7);
+    CHECK(names(file.parts[2]) == "Z.Z");
+    CHECK(file.parts[2].name == "Z");
+    CHECK(names(file.parts[6]) == "depth.Z");
+}
+
 TEST_CASE("exr files: a multi-part file has a part per layer and no bare names but beauty's") {
     const TempFolder folder;
     const WriteReport report =

@@ -151,4 +151,30 @@ TEST_CASE("light paths: what is wrong is said with its place") {
     says(std::string(5000, '('), "longer than 4096");
     says(std::string(300, '('), "nested too deep");
     says("C((((D{60}){60}){60}){60})L", "too large");
+    CHECK(complaint(std::string(5000, '(')).size() < 400);
+}
+
+TEST_CASE("light paths: an expression that no light can come by is known") {
+    for (const std::string nothing : {"C|L", "L", "C", "LC", "C<T'diffuse'>L", "C<RD>T+"}) {
+        CAPTURE(nothing);
+        CHECK_FALSE(LightPaths({taking(nothing)}, three_lights(), {}).is_taken(0));
+    }
+    const LightPaths two({taking("C"), taking("C.*")}, three_lights(), {});
+    CHECK_FALSE(two.is_taken(0));
+    CHECK(two.is_taken(1));
+}
+
+TEST_CASE("light paths: expressions that are too much together are refused, at once") {
+    says("C.*D.{14}L", "too intricate");
+    Passes many;
+    for (int i = 0; i < 300; ++i)
+        many.push_back(
+            taking("C.{0," + std::to_string(i % 60) + "}D.{0," + std::to_string(i / 60) + "}L"));
+    CHECK_THROWS_AS(LightPaths(many, three_lights(), {}), Error);
+    Passes simple;
+    for (int i = 0; i < 300; ++i)
+        simple.push_back(taking("C.*D{" + std::to_string(i % 60) + "}" + (i < 150 ? "L" : "[LO]")));
+    const LightPaths paths(simple, three_lights(), {});
+    // Those of no D and of one, of i = 0, 1, 60, 61 ... 241.
+    CHECK(paths.taking(paths.after(paths.start(), E::diffuse), L::light, 0).size() == 10);
 }

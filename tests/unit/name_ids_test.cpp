@@ -111,6 +111,17 @@ TEST_CASE("names: what has none is called after what it is, and bodies of lights
     CHECK(names_at(*scene, 20.5f, 0.5f) == Names{"panel", "light", "panel"});
 }
 
+TEST_CASE("names: bytes that are no UTF-8 are read as Latin-1, ids with them") {
+    MeshDesc mesh = floor_mesh(0, 1, -1);
+    mesh.name =
+        "K\xfc"
+        "che";
+    SceneDesc desc;
+    add_mesh(desc, std::move(mesh));
+    const ScenePtr scene = build_named(std::move(desc));
+    CHECK(names_at(*scene, 0.1f, 0.1f)[0] == "Küche");
+}
+
 TEST_CASE("names: a mesh's slots beyond its names do no harm, nor do names of no face") {
     SceneDesc desc;
     const int material = add(desc, matte(0.5f));

@@ -234,6 +234,43 @@ TEST_CASE("passes: data of the first surface") {
     CHECK(layers.at("shadow_matte")[0] == 0);
 }
 
+TEST_CASE("passes: under an even sky glass shows its albedos, of reflection and of what passes") {
+    for (const float roughness : {0.0f, 0.3f}) {
+        CAPTURE(roughness);
+        SceneDesc s;
+        add_sphere(s, {0, 0, 0}, 1, add(s, glass(roughness)));
+        add_sky(s, {1, 1, 1});
+        look(s, {0, 0, 5}, {0, 0, 0}, 24);
+        set_film(s, 32, 32, 256);
+        const Layers layers =
+            layers_of(s, {"specular", "specular_albedo", "transmission", "transmission_albedo"});
+        // 3 sigma of the rarer event at 200 000 samples; rough glass's albedo is that of its
+        // mirror direction.
+        const double tolerance = roughness > 0 ? 0.15 : 0.03;
+        CHECK(mean(layers.at("specular_albedo")) > 0.01);
+        CHECK(mean(layers.at("specular")) ==
+              doctest::Approx(mean(layers.at("specular_albedo"))).epsilon(tolerance));
+        CHECK(mean(layers.at("transmission")) ==
+              doctest::Approx(mean(layers.at("transmission_albedo"))).epsilon(0.03));
+    }
+}
+
+TEST_CASE("passes: where a lobe shines its albedo is not nothing") {
+    const Layers layers = layers_of(all_lobes(), {"lookdev"});
+    for (const std::string lobe : {"diffuse", "specular", "coat", "transmission", "sss", "sheen"}) {
+        const std::vector<float>& light = layers.at(lobe);
+        const std::vector<float>& albedo = layers.at(lobe + "_albedo");
+        int lit = 0, without = 0;
+        for (std::size_t i = 0; i < light.size(); ++i) {
+            lit += light[i] > 0;
+            without += light[i] > 0 && !(albedo[i] > 0);
+        }
+        CAPTURE(lobe);
+        CHECK(lit > 0);
+        CHECK(without == 0);
+    }
+}
+
 TEST_CASE("passes: ambient occlusion beside a wall is the sky's share by the cosine") {
     // A point on the floor at the foot of an endless wall sees half of the sky.
     SceneDesc s;
@@ -292,11 +329,20 @@ TEST_CASE("passes: names that are none are refused with the nearest") {
     says("key_left = CL", "Nuke");
     says("a_name_of_more_than_thirty_one_letters = CL", "31");
     says("mine =", "no expression");
+    says("beauty = C.*L", "there already");
+    says("CryptoObject00 = C.*L", "Cryptomatte");
     CHECK(complaint({"mine = CL", "mine = CO"}).find("twice") != std::string::npos);
+    CHECK(complaint({"RGBA_key = C.*[LOB]", "light_groups"}).find("twice") != std::string::npos);
     CHECK(complaint({"mine = CL", "mine = CL", "Z", "Z"}).empty());
     CHECK(choose_passes({}, {"default"}, {}).size() == 4);
     CHECK(choose_passes({"beauty"}, {"default"}, {}).empty());
     CHECK(choose_passes({"light_groups"}, {"default", "key"}, {}).size() == 2);
+    CHECK(choose_passes({"beauty@groups", "light_groups"}, {"default", "key"}, {}).size() == 2);
+    std::vector<std::string> many;
+    for (int i = 0; i < 1000; ++i) many.push_back("p" + std::to_string(i) + " = CL");
+    CHECK(complaint(many).empty());
+    many.push_back("one = CL");
+    CHECK(complaint(many).find("more than 1000 passes") != std::string::npos);
 }
 
 TEST_CASE("passes: docs/passes.md holds the tables that --passes prints") {
