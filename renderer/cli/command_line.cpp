@@ -1,0 +1,150 @@
+#include "renderer/cli/command_line.h"
+
+#include <CLI/CLI.hpp>
+
+#include "renderer/api/error.h"
+#include "renderer/core/nearest_name.h"
+
+namespace tessera {
+namespace {
+
+Error unknown_command(const std::string& word) {
+    const std::vector<std::string> known{"render", "merge",    "flatten", "info",
+                                         "bench",  "exrcheck", "version"};
+    return {ExitCode::usage,
+            "tessera: unknown command '" + word + "'" + did_you_mean(word, known) +
+                "; there are render, merge, flatten, info, bench, exrcheck and version (tessera "
+                "--help)"};
+}
+
+}  // namespace
+
+Option& Option::required() {
+    option_->required();
+    return *this;
+}
+
+Option& Option::in(int least, int most) {
+    option_->check(CLI::Range(least, most));
+    return *this;
+}
+
+Option& Option::in(double least, double most) {
+    option_->check(CLI::Range(least, most));
+    return *this;
+}
+
+Option& Option::one_of(const std::vector<std::string>& words) {
+    option_->check(CLI::IsMember(words));
+    return *this;
+}
+
+Option& Option::not_empty() {
+    return check([](const std::string& text) {
+        return text.empty() ? std::string("the name is empty") : std::string();
+    });
+}
+
+Option& Option::check(std::function<std::string(const std::string&)> test) {
+    option_->check(std::move(test));
+    return *this;
+}
+
+Option& Option::needs(const Option& other) {
+    option_->needs(other.option_);
+    return *this;
+}
+
+Option& Option::excludes(const Option& other) {
+    option_->excludes(other.option_);
+    return *this;
+}
+
+Command Command::add_command(const std::string& name, const std::string& help) {
+    return Command(app_->add_subcommand(name, help));
+}
+
+Option Command::option(const std::string& names, std::string& value, const std::string& help) {
+    return Option(app_->add_option(names, value, help));
+}
+
+Option Command::option(const std::string& names, int& value, const std::string& help) {
+    return Option(app_->add_option(names, value, help));
+}
+
+Option Command::option(const std::string& names, double& value, const std::string& help) {
+    return Option(app_->add_option(names, value, help));
+}
+
+Option Command::option(const std::string& names, std::optional<int>& value,
+                       const std::string& help) {
+    return Option(app_->add_option(names, value, help));
+}
+
+Option Command::option(const std::string& names, std::optional<double>& value,
+                       const std::string& help) {
+    return Option(app_->add_option(names, value, help));
+}
+
+Option Command::option(const std::string& names, std::optional<std::uint64_t>& value,
+                       const std::string& help) {
+    return Option(app_->add_option(names, value, help));
+}
+
+Option Command::option(const std::string& names, std::vector<std::string>& value,
+                       const std::string& help) {
+    return Option(app_->add_option(names, value, help));
+}
+
+Option Command::flag(const std::string& names, bool& value, const std::string& help) {
+    return Option(app_->add_flag(names, value, help));
+}
+
+Option Command::flag(const std::string& names, int& value, const std::string& help) {
+    return Option(app_->add_flag(names, value, help));
+}
+
+void Command::print_flag(const std::string& names, std::function<void()> print,
+                         const std::string& help) {
+    const auto print_and_end = [print = std::move(print)] {
+        print();
+        throw CLI::Success();
+    };
+    app_->add_flag_callback(names, print_and_end, help)->trigger_on_parse();
+}
+
+void Command::last_of_each() {
+    for (CLI::Option* o : app_->get_options())
+        o->multi_option_policy(o->get_expected_max() > 1 ? CLI::MultiOptionPolicy::TakeAll
+                                                         : CLI::MultiOptionPolicy::TakeLast);
+}
+
+void Command::footer(const std::string& text) { app_->footer(text); }
+
+void Command::hide() { app_->group(""); }
+
+void Command::when_chosen(std::function<void()> work) { app_->callback(std::move(work)); }
+
+CommandParser::CommandParser(const std::string& about, const std::string& version,
+                             const std::string& footer)
+    : app_(std::make_unique<CLI::App>(about)) {
+    app_->name("tessera");
+    app_->require_subcommand(1);
+    app_->set_version_flag("--version", version);
+    app_->footer(footer);
+}
+
+CommandParser::~CommandParser() = default;
+
+std::optional<int> CommandParser::parse(int argc, char** argv) {
+    try {
+        app_->parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        if (app_->get_subcommands().empty() && !app_->remaining().empty())
+            throw unknown_command(app_->remaining().front());
+        return app_->exit(e) == 0 ? 0 : static_cast<int>(ExitCode::usage);
+    }
+    return std::nullopt;
+}
+
+}  // namespace tessera
