@@ -216,7 +216,9 @@ TEST_CASE("exrcheck: a good file is clean") {
 }
 
 TEST_CASE("exrcheck: each fault is found, and nothing else") {
-    for (const auto& [id, fault] : faults()) {
+    for (const auto& entry : faults()) {
+        const std::string id = entry.first;
+        const auto& fault = entry.second;
         CAPTURE(id);
         ExrBytes file = fault.from();
         fault.spoil(file);
