@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <memory>
@@ -76,15 +75,15 @@ int run_bench(const BenchOptions& o) {
 
 }  // namespace
 
-void add_bench(CLI::App& app, CommandLine& line) {
-    CLI::App* sub =
-        app.add_subcommand("bench", "Time the rendering of a scene, loading and writing left out");
+void add_bench(Command app, CommandLine& line) {
+    Command sub =
+        app.add_command("bench", "Time the rendering of a scene, loading and writing left out");
     auto o = std::make_shared<BenchOptions>();
-    o->scene.add_to(*sub);
-    sub->add_flag("--replay", o->replay,
-                  "Also time Embree alone on the very same rays: the traversal ratio");
-    sub->add_option("--repeats", o->repeats, "Timed runs")->check(CLI::Range(1, 1000));
-    sub->callback([o, &line] { line.run = [o] { return run_bench(*o); }; });
+    o->scene.add_to(sub);
+    sub.flag("--replay", o->replay,
+             "Also time Embree alone on the very same rays: the traversal ratio");
+    sub.option("--repeats", o->repeats, "Timed runs").in(1, 1000);
+    sub.when_chosen([o, &line] { line.run = [o] { return run_bench(*o); }; });
 }
 
 }  // namespace tessera

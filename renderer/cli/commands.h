@@ -3,11 +3,8 @@
 
 #include <functional>
 #include <string>
-#include <vector>
 
-namespace CLI {
-class App;
-}
+#include "renderer/cli/command_line.h"
 
 namespace tessera {
 
@@ -17,13 +14,13 @@ struct CommandLine {
     std::string text;  // the whole command line, for the file's header
 };
 
-void add_render(CLI::App& app, CommandLine& line);
-void add_merge(CLI::App& app, CommandLine& line);
-void add_info(CLI::App& app, CommandLine& line);
-void add_bench(CLI::App& app, CommandLine& line);
-void add_version(CLI::App& app, CommandLine& line);
-void add_exrcheck(CLI::App& app, CommandLine& line);
-void add_flatten(CLI::App& app, CommandLine& line);
-void add_schema(CLI::App& app, CommandLine& line);
+void add_render(Command app, CommandLine& line);
+void add_merge(Command app, CommandLine& line);
+void add_info(Command app, CommandLine& line);
+void add_bench(Command app, CommandLine& line);
+void add_version(Command app, CommandLine& line);
+void add_exrcheck(Command app, CommandLine& line);
+void add_flatten(Command app, CommandLine& line);
+void add_schema(Command app, CommandLine& line);
 
 }  // namespace tessera

@@ -1,5 +1,3 @@
-#include <CLI/CLI.hpp>
-
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -102,16 +100,16 @@ int run_check(const CheckOptions& options) {
 
 }  // namespace
 
-void add_exrcheck(CLI::App& app, CommandLine& line) {
-    CLI::App* sub = app.add_subcommand(
+void add_exrcheck(Command app, CommandLine& line) {
+    Command sub = app.add_command(
         "exrcheck", "Check EXR files of any renderer for what compositors stumble over");
     auto o = std::make_shared<CheckOptions>();
-    sub->add_option("files", o->files, "The files");
-    sub->add_flag("--json", o->json, "As JSON");
-    sub->add_flag("--strict", o->strict, "Warnings count as errors");
-    sub->add_flag("--rules", o->rules, "The rules, as a table (docs/exrcheck.md)");
-    sub->footer("Exit codes: 0 no errors, 3 a file has errors (or, with --strict, warnings)");
-    sub->callback([o, &line] { line.run = [o] { return run_check(*o); }; });
+    sub.option("files", o->files, "The files");
+    sub.flag("--json", o->json, "As JSON");
+    sub.flag("--strict", o->strict, "Warnings count as errors");
+    sub.flag("--rules", o->rules, "The rules, as a table (docs/exrcheck.md)");
+    sub.footer("Exit codes: 0 no errors, 3 a file has errors (or, with --strict, warnings)");
+    sub.when_chosen([o, &line] { line.run = [o] { return run_check(*o); }; });
 }
 
 }  // namespace tessera

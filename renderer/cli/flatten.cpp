@@ -1,5 +1,3 @@
-#include <CLI/CLI.hpp>
-
 #include <filesystem>
 #include <memory>
 
@@ -54,20 +52,19 @@ int run_flatten(const FlattenOptions& o) {
 
 }  // namespace
 
-void add_flatten(CLI::App& app, CommandLine& line) {
-    CLI::App* sub =
-        app.add_subcommand("flatten", "Merge deep EXR files by depth into a flat picture");
+void add_flatten(Command app, CommandLine& line) {
+    Command sub = app.add_command("flatten", "Merge deep EXR files by depth into a flat picture");
     auto o = std::make_shared<FlattenOptions>();
-    sub->add_option("files", o->files, "Deep files of one frame, as render --deep writes them")
-        ->required();
-    sub->add_option("-o,--output", o->output, "The EXR to write")->required();
-    sub->add_flag("--float", o->all_float, "All channels as 32-bit float");
-    sub->add_flag("-q,--quiet", o->quiet, "Say nothing but errors");
-    sub->footer(
+    sub.option("files", o->files, "Deep files of one frame, as render --deep writes them")
+        .required();
+    sub.option("-o,--output", o->output, "The EXR to write").required();
+    sub.flag("--float", o->all_float, "All channels as 32-bit float");
+    sub.flag("-q,--quiet", o->quiet, "Say nothing but errors");
+    sub.footer(
         "Examples:\n"
         "  tessera flatten deep.exr -o flat.exr\n"
         "  tessera flatten car_deep.exr street_deep.exr -o both.exr --float");
-    sub->callback([o, &line] { line.run = [o] { return run_flatten(*o); }; });
+    sub.when_chosen([o, &line] { line.run = [o] { return run_flatten(*o); }; });
 }
 
 }  // namespace tessera

@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <iterator>
 #include <memory>
 
@@ -54,14 +53,14 @@ std::string text_of(const Scene& scene) {
 
 }  // namespace
 
-void add_info(CLI::App& app, CommandLine& line) {
-    CLI::App* sub = app.add_subcommand(
+void add_info(Command app, CommandLine& line) {
+    Command sub = app.add_command(
         "info", "Print what is in a scene, and what of the renderer it does not need");
     auto options = std::make_shared<SceneOptions>();
     auto json = std::make_shared<bool>(false);
-    options->add_to(*sub);
-    sub->add_flag("--json", *json, "As JSON, in the form of the statistics file");
-    sub->callback([=, &line] {
+    options->add_to(sub);
+    sub.flag("--json", *json, "As JSON, in the form of the statistics file");
+    sub.when_chosen([=, &line] {
         line.run = [=] {
             double load_s = 0;
             const ScenePtr scene = build_scene(options->load(load_s), options->build_options());

@@ -1,6 +1,5 @@
 #include "renderer/cli/long_render.h"
 
-#include <CLI/CLI.hpp>
 #include <charconv>
 #include <filesystem>
 
@@ -43,21 +42,20 @@ bool same_file(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-void LongRenderOptions::add_to(CLI::App& app) {
-    CLI::Option* const file =
-        app.add_option("--checkpoint", checkpoint,
-                       "Film file (.tsf) to save to while rendering and at the end, for --resume");
-    app.add_option(
-           "--checkpoint-every", checkpoint_s,
-           "Seconds between two (default 60, or more where saving would cost over 1 % of the "
-           "time)")
-        ->check(CLI::Range(0.01, 1e8))
-        ->needs(file);
-    app.add_option("--resume", resume,
-                   "Film file to go on from; if it is that of --checkpoint it need not be there "
-                   "yet");
-    app.add_option("--samples", samples,
-                   "Only samples A to B-1 of each pixel, A:B; with -o PART.tsf for tessera merge");
+void LongRenderOptions::add_to(Command app) {
+    Option file =
+        app.option("--checkpoint", checkpoint,
+                   "Film file (.tsf) to save to while rendering and at the end, for --resume");
+    app.option("--checkpoint-every", checkpoint_s,
+               "Seconds between two (default 60, or more where saving would cost over 1 % of the "
+               "time)")
+        .in(0.01, 1e8)
+        .needs(file);
+    app.option("--resume", resume,
+               "Film file to go on from; if it is that of --checkpoint it need not be there "
+               "yet");
+    app.option("--samples", samples,
+               "Only samples A to B-1 of each pixel, A:B; with -o PART.tsf for tessera merge");
 }
 
 void LongRenderOptions::apply(std::optional<int>& spp, const std::string& output) {

@@ -5,11 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "renderer/cli/command_line.h"
 #include "renderer/cli/output_check.h"
-
-namespace CLI {  // NOLINT(readability-identifier-naming): the library's own name
-class App;
-}
 
 namespace tessera {
 
@@ -18,7 +15,7 @@ struct LongRenderOptions {
     double checkpoint_s = 0;  // 0: not asked for
     int first_sample = 0;     // from --samples, once apply() is through
 
-    void add_to(CLI::App& app);
+    void add_to(Command app);
     /// Reads --samples into first_sample and spp (which --spp must not have set), checks what
     /// --resume and --checkpoint name. Throws Error(usage), Error(scene) for a file to resume from
     /// that is no good. output: where -o goes.

@@ -1,5 +1,3 @@
-#include <CLI/CLI.hpp>
-
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -213,38 +211,30 @@ int run_merge(const MergeOptions& o, const std::string& command) {
 
 }  // namespace
 
-void add_merge(CLI::App& app, CommandLine& line) {
-    CLI::App* sub = app.add_subcommand(
-        "merge", "Join parts of a picture (.tsf): ranges of samples, crops, tiles");
+void add_merge(Command app, CommandLine& line) {
+    Command sub =
+        app.add_command("merge", "Join parts of a picture (.tsf): ranges of samples, crops, tiles");
     auto o = std::make_shared<MergeOptions>();
-    const auto named = [](const std::string& text) {
-        return text.empty() ? "the name is empty" : std::string();
-    };
-    sub->add_option("parts", o->parts, "Film files, written by render -o PART.tsf or --checkpoint")
-        ->required()
-        ->check(named);
-    sub->add_option("-o,--output", o->output, "The EXR to write, or a .tsf to merge further")
-        ->required()
-        ->check(named);
-    sub->add_option("--preview", o->preview, "Also a .png or .jpg for the eye")->check(named);
-    sub->add_option("--deep", o->deep, "Also a deep EXR, of parts that were rendered with --deep")
-        ->check(named);
-    sub->add_option("--view", o->view, "OpenColorIO view of the preview (default: the config's)");
-    sub->add_option("-s,--spp", o->spp, "Samples per pixel that there must be")
-        ->check(CLI::Range(1, 1 << 24));
-    sub->add_flag("--allow-partial", o->partial,
-                  "A picture of what there is, though samples or pixels are missing");
-    o->out.add_format_to(*sub);
-    sub->add_option("--crypto-manifest", o->crypto_manifest,
-                    "Cryptomatte's names in the header or in files beside it: embedded, sidecar")
-        ->check(CLI::IsMember({"embedded", "sidecar"}));
-    sub->add_flag("-q,--quiet", o->quiet, "Say nothing but errors");
-    sub->footer(
+    sub.option("parts", o->parts, "Film files, written by render -o PART.tsf or --checkpoint")
+        .required();
+    sub.option("-o,--output", o->output, "The EXR to write, or a .tsf to merge further").required();
+    sub.option("--preview", o->preview, "Also a .png or .jpg for the eye");
+    sub.option("--deep", o->deep, "Also a deep EXR, of parts that were rendered with --deep");
+    sub.option("--view", o->view, "OpenColorIO view of the preview (default: the config's)");
+    sub.option("-s,--spp", o->spp, "Samples per pixel that there must be").in(1, 1 << 24);
+    sub.flag("--allow-partial", o->partial,
+             "A picture of what there is, though samples or pixels are missing");
+    o->out.add_format_to(sub);
+    sub.option("--crypto-manifest", o->crypto_manifest,
+               "Cryptomatte's names in the header or in files beside it: embedded, sidecar")
+        .one_of({"embedded", "sidecar"});
+    sub.flag("-q,--quiet", o->quiet, "Say nothing but errors");
+    sub.footer(
         "Example:\n"
         "  tessera render scene.toml --samples 0:32 -o a.tsf\n"
         "  tessera render scene.toml --samples 32:64 -o b.tsf      (on another machine)\n"
         "  tessera merge a.tsf b.tsf -o out.exr                    (the bits of --spp 64)");
-    sub->callback([o, &line] { line.run = [o, &line] { return run_merge(*o, line.text); }; });
+    sub.when_chosen([o, &line] { line.run = [o, &line] { return run_merge(*o, line.text); }; });
 }
 
 }  // namespace tessera

@@ -1,6 +1,5 @@
 #include "renderer/cli/output_options.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -41,26 +40,25 @@ void parse_overscan(const std::string& text, FilmDesc& film) {
 
 }  // namespace
 
-void OutputOptions::add_to(CLI::App& app) {
+void OutputOptions::add_to(Command app) {
     add_format_to(app);
-    app.add_option("--overscan", overscan,
-                   "Render beyond each edge of the frame: 0.1 of its size, or 16px");
+    app.option("--overscan", overscan,
+               "Render beyond each edge of the frame: 0.1 of its size, or 16px");
 }
 
-void OutputOptions::add_format_to(CLI::App& app) {
-    app.add_option("--exr", exr,
-                   "single: one part; multipart: a part per layer; split: a file per layer, <aov> "
-                   "in -o stands for its name")
-        ->check(CLI::IsMember({"single", "multipart", "split"}));
-    app.add_option("--compression", compression,
-                   "none, zips, zip (default), piz; dwaa, dwab: lossy, for colour only")
-        ->check(CLI::IsMember({"none", "zips", "zip", "piz", "dwaa", "dwab"}));
-    app.add_option("--dwa-level", dwa_level, "Loss of dwaa and dwab (default 45)")
-        ->check(CLI::Range(0.0, 1000.0));
-    app.add_flag("--float", all_float, "All channels as 32-bit float");
-    app.add_flag("--crop-pad", crop_pad, "The whole frame, black where nothing was rendered");
-    app.add_flag("--deterministic-metadata", deterministic,
-                 "No date, host, time, threads or command line in the header");
+void OutputOptions::add_format_to(Command app) {
+    app.option("--exr", exr,
+               "single: one part; multipart: a part per layer; split: a file per layer, <aov> "
+               "in -o stands for its name")
+        .one_of({"single", "multipart", "split"});
+    app.option("--compression", compression,
+               "none, zips, zip (default), piz; dwaa, dwab: lossy, for colour only")
+        .one_of({"none", "zips", "zip", "piz", "dwaa", "dwab"});
+    app.option("--dwa-level", dwa_level, "Loss of dwaa and dwab (default 45)").in(0.0, 1000.0);
+    app.flag("--float", all_float, "All channels as 32-bit float");
+    app.flag("--crop-pad", crop_pad, "The whole frame, black where nothing was rendered");
+    app.flag("--deterministic-metadata", deterministic,
+             "No date, host, time, threads or command line in the header");
 }
 
 void OutputOptions::apply(SceneDesc& scene) const {

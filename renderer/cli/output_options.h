@@ -5,10 +5,7 @@
 #include <string>
 
 #include "renderer/api/image.h"
-
-namespace CLI {  // NOLINT(readability-identifier-naming): the library's own name
-class App;
-}
+#include "renderer/cli/command_line.h"
 
 namespace tessera {
 
@@ -17,9 +14,9 @@ struct OutputOptions {
     std::optional<double> dwa_level;
     bool all_float = false, crop_pad = false, deterministic = false;
 
-    void add_to(CLI::App& app);
+    void add_to(Command app);
     /// Those that say nothing of what is rendered.
-    void add_format_to(CLI::App& app);
+    void add_format_to(Command app);
     /// Throws Error(usage) for what excludes each other. SOURCE_DATE_EPOCH in the environment
     /// asks for deterministic metadata.
     void apply(SceneDesc& scene) const;

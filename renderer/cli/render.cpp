@@ -1,5 +1,3 @@
-#include <CLI/CLI.hpp>
-
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
@@ -296,61 +294,48 @@ int run_render(RenderOptions options, const std::string& command) {
 
 }  // namespace
 
-void add_render(CLI::App& app, CommandLine& line) {
-    CLI::App* sub = app.add_subcommand("render", "Render a scene to a layered EXR");
+void add_render(Command app, CommandLine& line) {
+    Command sub = app.add_command("render", "Render a scene to a layered EXR");
     auto o = std::make_shared<RenderOptions>();
-    o->scene.add_to(*sub);
-    const auto named = [](const std::string& text) {
-        return text.empty() ? "the name is empty" : std::string();
-    };
+    o->scene.add_to(sub);
     const auto positive_seconds = [](const std::string& text) {
         char* end = nullptr;
         const double s = std::strtod(text.c_str(), &end);
         return *end == 0 && s > 0 && s <= 1e9 ? std::string()
                                               : text + " is no number of seconds above 0";
     };
-    sub->add_option("-o,--output", o->output,
-                    "The EXR to write (default: the scene's name, in the current folder), or a "
-                    ".tsf for tessera merge")
-        ->check(named);
-    sub->add_option("--preview", o->preview, "Also a .png or .jpg for the eye")->check(named);
-    sub->add_option("--view", o->view, "OpenColorIO view of the preview (default: the config's)");
-    sub->add_option("--stats", o->stats, "Statistics as JSON; - for standard output")->check(named);
-    sub->add_option("--time", o->time_s,
-                    "Seconds to render; passes until they are used, --spp at most")
-        ->check(positive_seconds);
-    o->runs.add_to(*sub);
-    sub->add_option("--display", o->display,
-                    "HOST:PORT of a tev viewer that shows the picture as it grows")
-        ->check(named);
-    sub->add_option("--deep", o->deep,
-                    "Also a deep EXR: beauty apart by depth, for merging by depth; or the .tsf of "
-                    "-o, to keep depths in it for tessera merge --deep")
-        ->check(named);
-    o->out.add_to(*sub);
-    sub->add_flag_callback(
-           "--list-aovs",
-           [] {
-               print_out(list_of_passes());
-               throw CLI::Success();
-           },
-           "List the passes that --aov takes")
-        ->trigger_on_parse();
-    sub->add_option("--crypto-manifest", o->crypto_manifest,
-                    "Cryptomatte's names in the header or in files beside it: embedded, sidecar")
-        ->check(CLI::IsMember({"embedded", "sidecar"}));
-    sub->add_option("--progress", o->progress, "auto, bar, line, json, tractor or none")
-        ->check(CLI::IsMember(progress_styles()));
-    sub->add_flag("--no-progress", o->no_progress, "As --progress none");
-    sub->add_flag("-v,--verbose", o->verbose, "Say more");
-    sub->add_flag("-q,--quiet", o->quiet, "Say nothing but errors");
-    sub->footer(
+    sub.option("-o,--output", o->output,
+               "The EXR to write (default: the scene's name, in the current folder), or a "
+               ".tsf for tessera merge");
+    sub.option("--preview", o->preview, "Also a .png or .jpg for the eye");
+    sub.option("--view", o->view, "OpenColorIO view of the preview (default: the config's)");
+    sub.option("--stats", o->stats, "Statistics as JSON; - for standard output");
+    sub.option("--time", o->time_s, "Seconds to render; passes until they are used, --spp at most")
+        .check(positive_seconds);
+    o->runs.add_to(sub);
+    sub.option("--display", o->display,
+               "HOST:PORT of a tev viewer that shows the picture as it grows");
+    sub.option("--deep", o->deep,
+               "Also a deep EXR: beauty apart by depth, for merging by depth; or the .tsf of "
+               "-o, to keep depths in it for tessera merge --deep");
+    o->out.add_to(sub);
+    sub.print_flag(
+        "--list-aovs", [] { print_out(list_of_passes()); }, "List the passes that --aov takes");
+    sub.option("--crypto-manifest", o->crypto_manifest,
+               "Cryptomatte's names in the header or in files beside it: embedded, sidecar")
+        .one_of({"embedded", "sidecar"});
+    sub.option("--progress", o->progress, "auto, bar, line, json, tractor or none")
+        .one_of(progress_styles());
+    sub.flag("--no-progress", o->no_progress, "As --progress none");
+    sub.flag("-v,--verbose", o->verbose, "Say more");
+    sub.flag("-q,--quiet", o->quiet, "Say nothing but errors");
+    sub.footer(
         "Examples:\n"
         "  tessera render bunny.obj -o bunny.exr\n"
         "  tessera render scene.toml -o out.exr --time 60 --preview out.png\n"
         "  tessera render scene.toml -o crop.exr --crop 100,100,200,200 --aov Z --aov N\n"
         "  tessera render scene.toml -o comp.exr --aov compositing --aov light_groups");
-    sub->callback([o, &line] {
+    sub.when_chosen([o, &line] {
         line.run = [o, &line] {
             // With a time to fill and no count asked for, the time alone decides.
             if (o->time_s > 0 && !o->scene.spp && o->runs.samples.empty()) o->scene.spp = 1 << 24;

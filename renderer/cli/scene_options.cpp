@@ -1,6 +1,5 @@
 #include "renderer/cli/scene_options.h"
 
-#include <CLI/CLI.hpp>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -81,49 +80,45 @@ void apply_crop(const PixelWindow& c, const std::string& text, FilmDesc& film) {
 
 }  // namespace
 
-void SceneOptions::add_to(CLI::App& app) {
-    app.add_option("scene", scene, "Scene: an .obj or a Tessera scene file (.toml)")->required();
-    app.add_option("-s,--spp", spp, "Samples per pixel")->check(CLI::Range(1, 1 << 24));
-    app.add_option("-r,--res", res, "Resolution, WIDTHxHEIGHT");
-    app.add_option("--camera", camera,
-                   "A picture of all directions, to be an environment's file: latlong or cube")
-        ->check(CLI::IsMember({"latlong", "cube"}));
-    app.add_option("--camera-position", camera_position, "Where the camera stands, X,Y,Z");
-    app.add_option("--crop", crop, "Crop window X0,Y0,X1,Y1 in pixels of the full frame");
-    app.add_option("--seed", seed, "Seed of the sampling");
-    app.add_option("--frame", frame, "Frame of image sequences")
-        ->check(CLI::Range(-1000000, 1000000));
-    app.add_option(
+void SceneOptions::add_to(Command app) {
+    app.option("scene", scene, "Scene: an .obj or a Tessera scene file (.toml)").required();
+    app.option("-s,--spp", spp, "Samples per pixel").in(1, 1 << 24);
+    app.option("-r,--res", res, "Resolution, WIDTHxHEIGHT");
+    app.option("--camera", camera,
+               "A picture of all directions, to be an environment's file: latlong or cube")
+        .one_of({"latlong", "cube"});
+    app.option("--camera-position", camera_position, "Where the camera stands, X,Y,Z");
+    app.option("--crop", crop, "Crop window X0,Y0,X1,Y1 in pixels of the full frame");
+    app.option("--seed", seed, "Seed of the sampling");
+    app.option("--frame", frame, "Frame of image sequences").in(-1000000, 1000000);
+    app.option(
         "--aov", aovs,
         "A pass beyond beauty, a preset (compositing, lookdev, ...), light_groups, PASS@groups or "
         "'NAME = LIGHT PATH EXPRESSION' (repeatable; see --list-aovs; 'beauty' alone: none)");
-    app.add_option("--set", set,
-                   "Any key of the scene file, for example --set camera.fov_deg=35 (repeatable)");
-    app.add_option("-t,--threads", threads,
-                   "Threads; 0: what affinity, cgroup and Slurm allow; -N: all but N")
-        ->check(CLI::Range(-4096, 4096));
-    app.add_option("--tile", tile, "Tile size in pixels, a multiple of 4")
-        ->check(CLI::Range(4, 4096));
-    app.add_option("--kernel", kernel,
-                   "Path kernel: basic, surface or full (default: the smallest that serves)")
-        ->check(CLI::IsMember({"basic", "surface", "full"}));
-    app.add_option("--isa", isa, "Embree's instruction set (default: the best of this machine)")
-        ->check(CLI::IsMember({"sse2", "sse4.2", "avx", "avx2", "avx512"}));
-    app.add_option("--texture-memory", texture_memory,
-                   "MiB that textures may take, the tile cache included (default 4096)")
-        ->check(CLI::Range(32, 1 << 24));
-    app.add_flag("--auto-tx", auto_tx,
-                 "Images that --texture-memory has no room for are made into .tx files, once");
-    app.add_option("--tx-cache", tx_cache,
-                   "Folder of the .tx files (default $XDG_CACHE_HOME/tessera/tx)");
-    CLI::Option* const no_warnings = app.add_flag("--strict", strict, "Warnings are errors");
-    app.add_flag("--lenient", lenient,
-                 "Broken faces, numbers and images are left out with a warning instead of refused")
-        ->excludes(no_warnings);
-    app.add_flag("--allow-external-assets", external, "Assets may lie outside the scene's folders");
-    for (CLI::Option* o : app.get_options())
-        o->multi_option_policy(o->get_expected_max() > 1 ? CLI::MultiOptionPolicy::TakeAll
-                                                         : CLI::MultiOptionPolicy::TakeLast);
+    app.option("--set", set,
+               "Any key of the scene file, for example --set camera.fov_deg=35 (repeatable)");
+    app.option("-t,--threads", threads,
+               "Threads; 0: what affinity, cgroup and Slurm allow; -N: all but N")
+        .in(-4096, 4096);
+    app.option("--tile", tile, "Tile size in pixels, a multiple of 4").in(4, 4096);
+    app.option("--kernel", kernel,
+               "Path kernel: basic, surface or full (default: the smallest that serves)")
+        .one_of({"basic", "surface", "full"});
+    app.option("--isa", isa, "Embree's instruction set (default: the best of this machine)")
+        .one_of({"sse2", "sse4.2", "avx", "avx2", "avx512"});
+    app.option("--texture-memory", texture_memory,
+               "MiB that textures may take, the tile cache included (default 4096)")
+        .in(32, 1 << 24);
+    app.flag("--auto-tx", auto_tx,
+             "Images that --texture-memory has no room for are made into .tx files, once");
+    app.option("--tx-cache", tx_cache,
+               "Folder of the .tx files (default $XDG_CACHE_HOME/tessera/tx)");
+    Option no_warnings = app.flag("--strict", strict, "Warnings are errors");
+    app.flag("--lenient", lenient,
+             "Broken faces, numbers and images are left out with a warning instead of refused")
+        .excludes(no_warnings);
+    app.flag("--allow-external-assets", external, "Assets may lie outside the scene's folders");
+    app.last_of_each();
 }
 
 SceneDesc SceneOptions::load(double& load_s) const {

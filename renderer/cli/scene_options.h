@@ -6,10 +6,7 @@
 #include <vector>
 
 #include "renderer/api/render.h"
-
-namespace CLI {  // NOLINT(readability-identifier-naming): the library's own name
-class App;
-}
+#include "renderer/cli/command_line.h"
 
 namespace tessera {
 
@@ -28,7 +25,7 @@ struct SceneOptions {
     bool auto_tx = false;
     bool strict = false, lenient = false, external = false;
 
-    void add_to(CLI::App& app);
+    void add_to(Command app);
     /// Reads the scene and lays the options over it. Returns seconds in load_s.
     SceneDesc load(double& load_s) const;
     BuildOptions build_options() const;

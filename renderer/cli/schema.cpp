@@ -1,6 +1,5 @@
 #include "renderer/io/schema.h"
 
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "renderer/cli/commands.h"
@@ -10,15 +9,15 @@
 
 namespace tessera {
 
-void add_schema(CLI::App& app, CommandLine& line) {
-    CLI::App* sub = app.add_subcommand(
-        "schema", "Print the JSON Schema of scene files (docs/scene.schema.json)");
-    sub->group("");  // for those who change the format: not in the help
+void add_schema(Command app, CommandLine& line) {
+    Command sub =
+        app.add_command("schema", "Print the JSON Schema of scene files (docs/scene.schema.json)");
+    sub.hide();  // for those who change the format: not in the help
     const auto nodes = std::make_shared<bool>(false);
-    sub->add_flag("--nodes", *nodes, "The list of nodes in its place (docs/nodes.md)");
+    sub.flag("--nodes", *nodes, "The list of nodes in its place (docs/nodes.md)");
     const auto passes = std::make_shared<bool>(false);
-    sub->add_flag("--passes", *passes, "The tables of passes (docs/passes.md)");
-    sub->callback([&line, nodes, passes] {
+    sub.flag("--passes", *passes, "The tables of passes (docs/passes.md)");
+    sub.when_chosen([&line, nodes, passes] {
         line.run = [nodes, passes] {
             print_out(*passes  ? passes_markdown()
                       : *nodes ? nodes_markdown()

@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -9,12 +8,12 @@
 
 namespace tessera {
 
-void add_version(CLI::App& app, CommandLine& line) {
-    CLI::App* sub =
-        app.add_subcommand("version", "Print versions of the program and of what it is built on");
+void add_version(Command app, CommandLine& line) {
+    Command sub =
+        app.add_command("version", "Print versions of the program and of what it is built on");
     auto json = std::make_shared<bool>(false);
-    sub->add_flag("--json", *json, "As JSON");
-    sub->callback([json, &line] {
+    sub.flag("--json", *json, "As JSON");
+    sub.when_chosen([json, &line] {
         line.run = [json] {
             const ThreadLimit limit = available_threads();
             if (*json) {

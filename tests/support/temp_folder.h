@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
 #include <string>
 
@@ -35,5 +36,12 @@ public:
 private:
     std::filesystem::path path_;
 };
+
+/// Removed first: ext4 waits for the disk where a file is cut and written again, which takes a test
+/// of thousands of damaged files seconds.
+inline void write_anew(const std::string& path, const std::string& bytes) {
+    std::filesystem::remove(path);
+    std::ofstream(path, std::ios::binary) << bytes;
+}
 
 }  // namespace tessera

@@ -87,9 +87,7 @@ std::string contents(const std::string& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-void put(const std::string& path, const std::string& bytes) {
-    std::ofstream(path, std::ios::binary) << bytes;
-}
+void put(const std::string& path, const std::string& bytes) { write_anew(path, bytes); }
 
 // Empty if the file can be flattened, else what is said of it, which must be an error of the input.
 std::string complaint(const std::string& path) {

@@ -6,8 +6,8 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <limits>
-#include <map>
 
 #include "renderer/api/node_table.h"
 #include "renderer/scene/scene.h"
@@ -137,25 +137,28 @@ Ball ball_of(const MeshDesc& m) {
 // Edges with a triangle on one side only, by the bits of their ends.
 std::size_t open_edges(const MeshDesc& m) {
     using Point = std::array<double, 3>;
-    std::map<std::pair<Point, Point>, int> met;
+    std::vector<std::pair<Point, Point>> there, back;
     const auto point = [&](std::uint32_t v) {
         const double* p = &m.positions[3 * std::size_t(v)];
         return Point{p[0], p[1], p[2]};
     };
     const auto triangle = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
         const Point p[3] = {point(a), point(b), point(c)};
-        for (int k = 0; k < 3; ++k) ++met[{p[k], p[(k + 1) % 3]}];
+        for (int k = 0; k < 3; ++k) {
+            there.emplace_back(p[k], p[(k + 1) % 3]);
+            back.emplace_back(p[(k + 1) % 3], p[k]);
+        }
     };
     const std::uint32_t* i = m.position_index.data();
     for (std::uint32_t t = 0; t < m.triangles; ++t, i += 3) triangle(i[0], i[1], i[2]);
     for (std::uint32_t q = 0; q < m.quads; ++q, i += 4)
         triangle(i[0], i[1], i[3]), triangle(i[2], i[3], i[1]);
-    std::size_t open = 0;
-    for (const auto& [edge, count] : met) {
-        const auto back = met.find({edge.second, edge.first});
-        open += back == met.end() || back->second != count;
-    }
-    return open;
+    std::sort(there.begin(), there.end());
+    std::sort(back.begin(), back.end());
+    std::vector<std::pair<Point, Point>> open;
+    std::set_symmetric_difference(there.begin(), there.end(), back.begin(), back.end(),
+                                  std::back_inserter(open));
+    return open.size();
 }
 
 std::string refusal(SceneDesc desc) {

@@ -223,7 +223,7 @@ TEST_CASE("exr: a truncated or damaged file is an error, never a crash") {
     write_exr(make_picture(), folder / "a.exr");
     const std::string whole = contents(folder / "a.exr");
     const auto code_of = [&](const std::string& bytes) {
-        std::ofstream(folder / "b.exr", std::ios::binary) << bytes;
+        write_anew(folder / "b.exr", bytes);
         ImageLimits limits;
         limits.max_bytes = 16 << 20;
         try {

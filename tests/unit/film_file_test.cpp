@@ -67,9 +67,7 @@ std::string bytes_of(const std::string& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-void write(const std::string& path, const std::string& bytes) {
-    std::ofstream(path, std::ios::binary) << bytes;
-}
+void write(const std::string& path, const std::string& bytes) { write_anew(path, bytes); }
 
 // The sum made right again, so that what is behind it is tested.
 std::string summed(std::string bytes) {

@@ -20,9 +20,7 @@ std::string contents(const std::string& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-void put(const std::string& path, const std::string& bytes) {
-    std::ofstream(path, std::ios::binary) << bytes;
-}
+void put(const std::string& path, const std::string& bytes) { write_anew(path, bytes); }
 
 /// What read_image says of the file; "" if it reads. Any other exception fails the test.
 std::string message_of(const std::string& path, const ImageLimits& limits = {}) {

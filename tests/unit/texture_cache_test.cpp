@@ -170,10 +170,10 @@ TEST_CASE("texture memory: no limit is too small for what cannot be in the cache
 TEST_CASE("auto-tx: where everything fits it changes nothing, whatever the size") {
     const TempFolder folder;
     // Just over kInCoreBytes.
-    constexpr int kSize = 8200;
-    std::vector<std::uint8_t> values(std::size_t(kSize) * kSize);
+    constexpr int kSize = 5800;
+    std::vector<std::uint16_t> values(std::size_t(kSize) * kSize);
     for (std::size_t i = 0; i < values.size(); ++i)
-        values[i] = static_cast<std::uint8_t>(i % 251 ^ i / kSize % 241);
+        values[i] = static_cast<std::uint16_t>(i % 65521 ^ i / kSize % 241);
     write_tiff(folder / "big.tif", kSize, kSize, 1, 0, values);
     TextureOptions options = tight(folder / "tx");
     options.memory_bytes = 128 << 20;
