@@ -231,7 +231,7 @@ void TextureStore::Impl::place(const TextureOptions& options, const ColorSpaces&
     for (bool all_placed = false; !all_placed;) {
         cache.reset();
         for (TextureSource& s : sources) s.tile = -1;
-        const std::int64_t rest = place_sources(sources, options.memory_bytes, options.auto_tx);
+        const std::int64_t rest = place_sources(sources, options);
         if (rest > 0) cache = std::make_unique<TileCache>(rest, tables);
         all_placed = true;
         for (TextureSource& s : sources)

@@ -32,6 +32,8 @@ struct TextureOptions {
     std::int64_t memory_bytes = kTextureMemory;  // pyramids and tile cache together
     bool auto_tx = false;   // what the tile cache reads badly is first made into a .tx
     std::string tx_folder;  // "": default_tx_folder()
+    /// More than this is not read as a whole where the tile cache reads it as well.
+    std::int64_t in_core_bytes = std::int64_t(64) << 20;
 };
 
 /// What textures hold and have read.
@@ -47,9 +49,6 @@ using Texel = std::array<float, 4>;
 
 class TextureStore {
 public:
-    /// More than this is not read as a whole where the tile cache reads it as well.
-    static constexpr std::int64_t kInCoreBytes = std::int64_t(64) << 20;
-
     /// Loads, in parallel if workers are given; results never depend on it. An unreadable file is
     /// reported once through problems.warn and becomes a magenta 1x1; NaN and infinite texels
     /// become 0 and are counted in the warning; an unknown colour space is a problems.error.

@@ -155,13 +155,13 @@ void load_pixels(TextureSource& s, const ColorSpaces& colors, const ByteTables& 
     or_magenta(s, tables, [&] { read_pixels(s, colors, tables); });
 }
 
-std::int64_t place_sources(std::vector<TextureSource>& sources, std::int64_t memory_bytes,
-                           bool auto_tx) {
+std::int64_t place_sources(std::vector<TextureSource>& sources, const TextureOptions& options) {
+    const std::int64_t memory_bytes = options.memory_bytes;
     const auto may_leave = [&](const TextureSource& s) {
-        return s.bytes > 0 && (fits_cache(s) || (auto_tx && !s.no_tx));
+        return s.bytes > 0 && (fits_cache(s) || (options.auto_tx && !s.no_tx));
     };
-    const auto is_large = [](const TextureSource& s) {
-        return s.finest_bytes > TextureStore::kInCoreBytes;
+    const auto is_large = [&](const TextureSource& s) {
+        return s.finest_bytes > options.in_core_bytes;
     };
     std::int64_t total = 0;
     bool any_leaves = false, any_large = false;

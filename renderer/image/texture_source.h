@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "renderer/image/pyramid.h"
+#include "renderer/image/texture.h"
 
 namespace tessera {
 
@@ -54,11 +55,11 @@ inline bool reads_well(const TextureSource& s) { return fits_cache(s) && !s.srgb
 
 /// Decides in_core and skip for all, by sizes and order alone, and tells in `bytes` what a pyramid
 /// will be. Everything is in memory if it fits, but for what the cache reads well and is over
-/// kInCoreBytes. Else what cannot be in the cache comes before all others, the largest halved until
-/// it fits; then what is up to kInCoreBytes, the smallest first. Pictures in memory get half of it
-/// if any may be in the cache. Returns what is left for the cache, in bytes; 0: nothing is in it.
-std::int64_t place_sources(std::vector<TextureSource>& sources, std::int64_t memory_bytes,
-                           bool auto_tx);
+/// options.in_core_bytes. Else what cannot be in the cache comes before all others, the largest
+/// halved until it fits; then what is up to options.in_core_bytes, the smallest first. Pictures in
+/// memory get half of it if any may be in the cache. Returns what is left for the cache, in bytes;
+/// 0: nothing is in it.
+std::int64_t place_sources(std::vector<TextureSource>& sources, const TextureOptions& options);
 
 /// Builds the pyramid, without its first `skip` levels. Never throws: as survey().
 void load_pixels(TextureSource& s, const ColorSpaces& colors, const ByteTables& tables) noexcept;

@@ -169,13 +169,13 @@ TEST_CASE("texture memory: no limit is too small for what cannot be in the cache
 
 TEST_CASE("auto-tx: where everything fits it changes nothing, whatever the size") {
     const TempFolder folder;
-    // Just over kInCoreBytes.
-    constexpr int kSize = 5800;
+    constexpr int kSize = 800;
     std::vector<std::uint16_t> values(std::size_t(kSize) * kSize);
     for (std::size_t i = 0; i < values.size(); ++i)
         values[i] = static_cast<std::uint16_t>(i % 65521 ^ i / kSize % 241);
     write_tiff(folder / "big.tif", kSize, kSize, 1, 0, values);
     TextureOptions options = tight(folder / "tx");
+    options.in_core_bytes = 1 << 20;  // the picture has more
     options.memory_bytes = 128 << 20;
     const std::vector<TextureDesc> desc{texture_of(folder / "big.tif")};
     TestStore without, with, tiled;
@@ -183,14 +183,15 @@ TEST_CASE("auto-tx: where everything fits it changes nothing, whatever the size"
     with.load(desc, TextureUse::color, options);
     CHECK_FALSE(fs::exists(folder / "tx"));
     check_equal(without, with);
-    options.memory_bytes = 64 << 20;
+    options.memory_bytes = 1 << 20;
     tiled.load(desc, TextureUse::color, options);
     CHECK(tiled->counts().cached == 1);
     check_equal(without, tiled);
     // What is tiled is read as a whole by nobody.
     const std::string tx = fs::directory_iterator(folder / "tx")->path().string();
     TestStore large;
-    large.load({texture_of(tx)});
+    options.memory_bytes = 128 << 20;
+    large.load({texture_of(tx)}, TextureUse::color, options);
     CHECK(large->counts().cached == 1);
     CHECK(large->memory_bytes() < 1 << 20);
 }
