@@ -4,6 +4,8 @@
 #include <cctype>
 #include <set>
 
+#include "renderer/film/blame.h"
+
 namespace tessera {
 namespace {
 
@@ -34,7 +36,7 @@ private:
     [[noreturn]] void fail(const std::string& what) const {
         constexpr std::size_t kShown = 200;
         const std::string shown = text_.size() <= kShown ? text_ : text_.substr(0, kShown) + " ...";
-        throw Error(ExitCode::usage, loc_,
+        throw Error(blame(loc_), loc_,
                     "light path expression '" + shown + "', character " + std::to_string(at_ + 1) +
                         ": " + what);
     }

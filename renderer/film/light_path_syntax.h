@@ -44,7 +44,8 @@ struct PathAutomaton {
     std::uint32_t end = 0;
 };
 
-/// Throws Error(usage): where in the expression, and what was expected.
+/// Throws Error, scene if it stands in one, else usage: where in the expression, and what was
+/// expected.
 PathAutomaton parse_light_paths(const std::string& expression, const PathAlphabet& alphabet,
                                 const SourceLoc& loc);
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "renderer/film/blame.h"
+
 namespace tessera {
 namespace {
 
@@ -11,7 +13,7 @@ constexpr std::size_t kMostStates = 4096;
 constexpr std::size_t kMostWork = 40'000'000;
 
 [[noreturn]] void too_many(const SourceLoc& loc) {
-    throw Error(ExitCode::usage, loc,
+    throw Error(blame(loc), loc,
                 "the light path expressions are too many or too intricate together (the automaton "
                 "that follows them all would be too large)");
 }

@@ -17,7 +17,7 @@ public:
     static constexpr State kDead = 0;  // no pass can take such a path any more
 
     LightPaths() = default;
-    /// passes: those of light_paths are numbered in their order. Throws Error(usage).
+    /// passes: those of light_paths are numbered in their order. Throws Error as choose_passes.
     LightPaths(const Passes& passes, std::vector<LightTag> tags, const SourceLoc& loc);
 
     int passes() const noexcept { return passes_; }

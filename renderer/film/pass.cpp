@@ -5,6 +5,7 @@
 
 #include "renderer/core/light_event.h"
 #include "renderer/core/nearest_name.h"
+#include "renderer/film/blame.h"
 
 namespace tessera {
 namespace {
@@ -148,7 +149,7 @@ struct Chooser {
     Passes out;
 
     [[noreturn]] void fail(const std::string& message) const {
-        throw Error(ExitCode::usage, loc, message);
+        throw Error(blame(loc), loc, message);
     }
 
     static const PassInfo* find(std::string_view name) {

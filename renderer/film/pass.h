@@ -70,7 +70,7 @@ std::span<const PassPreset> pass_presets();
 
 /// Reads what --aov and film.aovs take: names of passes and presets, "NAME = EXPRESSION",
 /// "light_groups" and "NAME@groups". groups: names of the light groups, "default" first. Throws
-/// Error(usage) with loc and the nearest known name.
+/// Error with loc and the nearest known name: scene if loc is a line of one, else usage.
 Passes choose_passes(const std::vector<std::string>& names, const std::vector<std::string>& groups,
                      const SourceLoc& loc);
 

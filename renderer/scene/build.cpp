@@ -11,6 +11,7 @@
 
 #include "renderer/core/log.h"
 #include "renderer/core/parallel.h"
+#include "renderer/film/blame.h"
 #include "renderer/geometry/find_creases.h"
 #include "renderer/scene/bake.h"
 #include "renderer/scene/emitters.h"
@@ -156,7 +157,7 @@ private:
         const SourceLoc& loc = desc_.film.aovs_loc;
         scene_->passes_ = tessera::choose_passes(desc_.film.aovs, tags.groups(), loc);
         if (needs_path(scene_->passes_) && desc_.render.integrator != Integrator::path)
-            throw Error(ExitCode::usage, loc,
+            throw Error(blame(loc), loc,
                         "film.aovs: passes of light, shadow and lobes need render.integrator = "
                         "'path'");
         scene_->light_paths_ = LightPaths(scene_->passes_, tags.tags(), loc);

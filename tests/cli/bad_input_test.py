@@ -80,6 +80,12 @@ class BadScene(BadInput):
             with self.subTest(new=new):
                 self.refuse_toml(SCENE_TOML.replace(old, new), f"bad.toml:{line}:")
 
+    def test_passes_that_are_none(self):
+        for aovs, said in (('["albdo"]', "did you mean 'albedo'"), ('["mine = C<R"]', "character")):
+            with self.subTest(aovs=aovs):
+                text = SCENE_TOML.replace("resolution = [48, 32]", f"resolution = [48, 32]\naovs = {aovs}")
+                self.refuse_toml(text, "bad.toml:8:", said)
+
     def test_several_errors_are_told_at_once(self):
         text = SCENE_TOML.replace("fov_deg = 40", "fov_deg = 190").replace("spp = 4", "spp = -4")
         self.refuse_toml(text, "bad.toml:5:", "bad.toml:9:")
