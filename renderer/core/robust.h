@@ -35,12 +35,12 @@ inline Vec3f error_in_place(const Affinef& m, float condition, Vec3f p, Vec3f er
            Vec3f(max_component(magnitude) * condition * gamma_bound(2));
 }
 
-/// The float next to v on the side that `toward` is on; v itself for 0. Finite input. Branch-free:
-/// the sides are random.
+/// The float next to v on the side that `toward` is on; v itself for 0. Finite input, else any
+/// float: lanes that nobody looks at may hold what they like. Branch-free: the sides are random.
 inline float next_toward_sign(float v, float toward) {
-    const auto bits = std::bit_cast<std::int32_t>(v);
-    const std::int32_t outward = bits ^ std::bit_cast<std::int32_t>(toward);  // sign: toward zero
-    const float moved = std::bit_cast<float>(bits + (outward >= 0 ? 1 : -1));
+    const auto bits = std::bit_cast<std::uint32_t>(v);
+    const auto outward = static_cast<std::int32_t>(bits ^ std::bit_cast<std::uint32_t>(toward));
+    const float moved = std::bit_cast<float>(bits + (outward >= 0 ? 1u : ~0u));  // 1 up or down
     const float from_zero = std::copysign(std::numeric_limits<float>::min(), toward);
     const float next = v == 0.0f ? from_zero : moved;  // denormals are flushed
     return toward == 0.0f ? v : next;

@@ -1,6 +1,7 @@
 #pragma once
 // Radiance by direction: a lat-long picture, y up, or the same from everywhere.
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -38,7 +39,9 @@ struct LatLongMap {
     Corners corners(Vec2f uv) const {
         const float x = uv.x * static_cast<float>(width) - 0.5f,
                     y = uv.y * static_cast<float>(height) - 0.5f;
-        const float fx = std::floor(x), fy = std::floor(y);
+        // Lanes that nobody looks at may hold what they like, NaN too; uv of others lie in [0, 1].
+        const float fx = std::max(-1.0f, std::min(std::floor(x), static_cast<float>(width - 1))),
+                    fy = std::max(-1.0f, std::min(std::floor(y), static_cast<float>(height - 1)));
         const int ix = static_cast<int>(fx), iy = static_cast<int>(fy);
         const int x0 = ix < 0 ? ix + width : ix, x1 = ix + 1 >= width ? ix + 1 - width : ix + 1;
         const int y0 = iy < 0 ? 0 : iy, y1 = iy + 1 >= height ? height - 1 : iy + 1;

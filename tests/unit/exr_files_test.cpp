@@ -215,8 +215,8 @@ TEST_CASE("exr files: no value that was clamped for a lossy codec comes back inf
         WriteOptions options = in(ExrLayout::single, ExrCompression::dwab);
         options.dwa_level = level;
         CHECK(write_exr(image, folder / "a.exr", options).clamped > 2000);
-        for (const float v : find_layer(read_exr(folder / "a.exr"), "R").pixels)
-            REQUIRE(std::isfinite(v));
+        const LayeredImage read = read_exr(folder / "a.exr");
+        for (const float v : find_layer(read, "R").pixels) REQUIRE(std::isfinite(v));
     }
 }
 
