@@ -33,8 +33,8 @@ public:
     Checkpoints(const Checkpoints&) = delete;
     Checkpoints& operator=(const Checkpoints&) = delete;
 
-    /// Time for one; the one before is on the disk.
-    bool wanted() const noexcept { return wanted_.load(std::memory_order_relaxed); }
+    /// Time for one; the one before is on the disk, and its copy anybody's again.
+    bool wanted() const noexcept { return wanted_.load(std::memory_order_acquire); }
     /// One is wanted now, or as soon as that under way is written.
     void hurry();
     /// Copies the film and clears wanted(). Without memory for a copy it writes at once.
