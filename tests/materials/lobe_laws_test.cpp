@@ -10,24 +10,12 @@ using namespace tessera;
 
 namespace {
 
-Vec3f upper(Random& n) {
-    Vec3d w = n.direction();
-    w.z = std::fabs(w.z) + 1e-3;
-    return Vec3f(normalize(w));
-}
-
-// bsdf(a, b) by value over cosine.
-template <class Model>
-double bsdf(const Model& m, Vec3f wo, Vec3f wi) {
-    return static_cast<double>(m.eval(wo, wi).f.y) / std::fabs(static_cast<double>(wi.z));
-}
-
 template <class Model>
 double worst_asymmetry(const Model& m, std::uint64_t seed) {
     Random n(seed);
     double worst = 0;
     for (int i = 0; i < 20000; ++i) {
-        const Vec3f a = upper(n), b = upper(n);
+        const Vec3f a = upper_direction(n), b = upper_direction(n);
         const double ab = bsdf(m, a, b), ba = bsdf(m, b, a);
         if (ab > 1e-6 || ba > 1e-6) worst = std::max(worst, std::fabs(ab - ba) / std::max(ab, ba));
     }
@@ -76,7 +64,7 @@ TEST_CASE("rough glass: both ways through have the same value but for the square
             double worst = 0;
             int compared = 0;
             for (int i = 0; i < 20000; ++i) {
-                const Vec3f a = upper(n), b = -upper(n);
+                const Vec3f a = upper_direction(n), b = -upper_direction(n);
                 const double ab = bsdf(here, a, b) * static_cast<double>(eta * eta);
                 // Seen from the other side: turned about x, so that b is up.
                 const double ba = bsdf(there, {b.x, -b.y, -b.z}, {a.x, -a.y, -a.z});
@@ -99,7 +87,7 @@ TEST_CASE("smooth glass: refracts by Snell's law and loses nothing") {
     Random n(11);
     for (int i = 0; i < 20000; ++i) {
         const float eta = i % 2 ? n.between(1.01f, 2.5f) : 1 / n.between(1.01f, 2.5f);
-        const Vec3f wo = upper(n);
+        const Vec3f wo = upper_direction(n);
         const auto glass = smooth_glass(eta);
         const double fresnel = fresnel_double(static_cast<double>(wo.z), static_cast<double>(eta));
         const double used = static_cast<double>(fresnel_dielectric(wo.z, eta));

@@ -11,17 +11,6 @@ using namespace tessera;
 
 namespace {
 
-Vec3f upper(Random& n) {
-    Vec3d w = n.direction();
-    w.z = std::fabs(w.z) + 1e-3;
-    return Vec3f(normalize(w));
-}
-
-template <class Model>
-double bsdf(const Model& m, Vec3f wo, Vec3f wi) {
-    return static_cast<double>(m.eval(wo, wi).f.y) / std::fabs(static_cast<double>(wi.z));
-}
-
 // below: wi on the other side; seen from there the surface is turned about x.
 template <class Model>
 double worst_asymmetry(const Model& m, bool below = false) {
@@ -29,7 +18,7 @@ double worst_asymmetry(const Model& m, bool below = false) {
     double worst = 0;
     int compared = 0;
     for (int i = 0; i < 20000; ++i) {
-        const Vec3f a = upper(n), b = below ? -upper(n) : upper(n);
+        const Vec3f a = upper_direction(n), b = below ? -upper_direction(n) : upper_direction(n);
         const double ab = bsdf(m, a, b),
                      ba = below ? bsdf(m, {b.x, -b.y, -b.z}, {a.x, -a.y, -a.z}) : bsdf(m, b, a);
         if (ab < 1e-6 && ba < 1e-6) continue;
@@ -76,7 +65,7 @@ TEST_CASE("reciprocity: rough diffuse, both sides of sheets and a tilted coat ha
         Random n(9);
         double worst = 0;
         for (int i = 0; i < 20000; ++i) {
-            const Vec3f a = upper(n), b = upper(n);
+            const Vec3f a = upper_direction(n), b = upper_direction(n);
             const double ca = double(dot(a, tilted.n)), cb = double(dot(b, tilted.n));
             if (ca < 1e-2 || cb < 1e-2) continue;
             const double ab = double(coat.eval(a, b).f.y) / cb,
@@ -95,7 +84,7 @@ TEST_CASE("reciprocity: fuzz has it not, and its albedo stays below one") {
         Random n(5);
         double sum = 0, apart = 0;
         for (int i = 0; i < 20000; ++i) {
-            const Vec3f a = upper(n), b = upper(n);
+            const Vec3f a = upper_direction(n), b = upper_direction(n);
             const double ab = bsdf(FuzzLobe::seen_at(a.z, roughness), a, b),
                          ba = bsdf(FuzzLobe::seen_at(b.z, roughness), b, a);
             sum += ab + ba, apart += std::fabs(ab - ba);
@@ -121,7 +110,7 @@ TEST_CASE(
             CAPTURE(roughness);
             int up = 0, down = 0;
             for (int i = 0; i < 3000; ++i) {
-                const Vec3f wo = upper(n);
+                const Vec3f wo = upper_direction(n);
                 const LobeDirection to = glass.direction(wo, n.pair(), n.unit());
                 if (length2(to.wi) < 0.5f || std::fabs(to.wi.z) < 0.02f || wo.z < 0.02f) continue;
                 const Vec3d h = half_vector(Vec3d(wo), Vec3d(to.wi), double(eta));
@@ -150,7 +139,7 @@ TEST_CASE("normals: bent ones are unit, seen, and mirror what is seen to above t
     Random n(13);
     for (int i = 0; i < 100000; ++i) {
         const Vec3f guard{0, 0, 1};
-        const Vec3f ns(n.direction()), wo = upper(n);
+        const Vec3f ns(n.direction()), wo = upper_direction(n);
         for (const bool within : {false, true}) {
             const Vec3f b =
                 within ? consistent_normal_within(ns, guard, wo) : consistent_normal(ns, guard, wo);

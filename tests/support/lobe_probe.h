@@ -2,6 +2,7 @@
 // One surface point's lobes as values, for tests: lane 0 of a block. Not for several threads at
 // once.
 
+#include <cmath>
 #include <optional>
 
 #include "materials/surface/openpbr.h"
@@ -64,5 +65,11 @@ public:
 private:
     mutable AllLobes lobes_;  // evaluation writes its results into the block
 };
+
+/// The BSDF itself, green: what eval() gives has the cosine in it.
+template <class Model>
+double bsdf(const Model& m, Vec3f wo, Vec3f wi) {
+    return static_cast<double>(m.eval(wo, wi).f.y) / std::fabs(static_cast<double>(wi.z));
+}
 
 }  // namespace tessera

@@ -38,4 +38,11 @@ private:
     std::uint64_t state_;
 };
 
+/// On the upper hemisphere, a little off its rim.
+inline Vec3f upper_direction(Random& n) {
+    Vec3d w = n.direction();
+    w.z = std::fabs(w.z) + 1e-3;
+    return Vec3f(normalize(w));
+}
+
 }  // namespace tessera
