@@ -28,6 +28,8 @@ struct LobesOfKind {
     LaneMask lanes = 0;         // those that have such a lobe
     float chance[kLanes] = {};  // of its being sampled; 0: the lane has none
     Vec3Lanes weight;
+
+    LobesOfKind() noexcept {}  // a tuple would clear all of it
 };
 
 /// Models: the kinds that there can be; a point has at most one lobe of each.
