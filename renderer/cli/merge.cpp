@@ -154,7 +154,7 @@ LayeredImage picture_of(FilmFile& all) {
     image.width = h.width, image.height = h.height;
     image.window = h.window;
     image.working_space = h.working_space;
-    image.layers = all.film.layers();
+    image.layers = all.film.layers(all.film.window());
     image.metadata = h.metadata;
     std::vector<std::string> notes;
     add_mattes(all.film, h.ids, image.layers, notes);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "renderer/core/parallel.h"
+
 namespace tessera {
 namespace {
 
@@ -49,14 +51,19 @@ double sum_of(Color c) {
     return static_cast<double>(c.x) + static_cast<double>(c.y) + static_cast<double>(c.z);
 }
 
-template <class T>
-std::size_t capacity_bytes(const std::vector<T>& v) {
-    return v.capacity() * sizeof(T);
+template <class Vector>
+std::size_t capacity_bytes(const Vector& v) {
+    return v.capacity() * sizeof(v[0]);
 }
 
-template <class T>
-std::span<std::byte> bytes_of(std::vector<T>& v) {
+template <class Vector>
+std::span<std::byte> bytes_of(Vector& v) {
     return std::as_writable_bytes(std::span(v));
+}
+
+void make_room(Layer& layer, const PixelWindow& part) {
+    layer.pixels.resize(static_cast<std::size_t>(part.width()) *
+                        static_cast<std::size_t>(part.height()) * layer.channels.size());
 }
 
 }  // namespace
@@ -235,31 +242,48 @@ void Film::merge(const Film& other) {
     }
 }
 
+std::vector<Layer> Film::layers(Workers& workers) const {
+    std::vector<Layer> out = outline();
+    workers.for_each(static_cast<int>(out.size()), [&](int i) { make_room(out[i], window_); });
+    workers.for_each(window_.height(), [&](int row) { put_row(window_, window_.y0 + row, out); });
+    return out;
+}
+
 std::vector<Layer> Film::layers(const PixelWindow& part) const {
-    std::vector<std::size_t> pixels;
-    for (int y = part.y0; y < part.y1; ++y) {
-        for (int x = part.x0; x < part.x1; ++x) pixels.push_back(pixel(x, y));
-    }
-    std::vector<Layer> out;
-    Layer beauty{"", {"R", "G", "B", "A"}, LayerKind::color, std::vector<float>(pixels.size() * 4)};
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-        const Beauty& b = beauty_[pixels[i]];
-        const double w = b.samples > 0 ? 1.0 / b.samples : 0.0;
-        for (std::size_t c = 0; c < 3; ++c)
-            beauty.pixels[i * 4 + c] = static_cast<float>(b.rgb[c].value() * w);
-        beauty.pixels[i * 4 + 3] = static_cast<float>(b.hits * w);
-    }
-    out.push_back(std::move(beauty));
+    std::vector<Layer> out = outline();
+    for (Layer& layer : out) make_room(layer, part);
+    for (int y = part.y0; y < part.y1; ++y) put_row(part, y, out);
+    return out;
+}
+
+// The layers without their pixels.
+std::vector<Layer> Film::outline() const {
+    std::vector<Layer> out{{"", {"R", "G", "B", "A"}, LayerKind::color, {}}};
     for (std::size_t p = 0; p < passes_.size(); ++p) {
-        if (planes_[p].coverage) continue;
-        const std::size_t channels = passes_[p].channels.size();
-        Layer layer{passes_[p].name, passes_[p].channels, passes_[p].kind,
-                    std::vector<float>(pixels.size() * channels)};
-        for (std::size_t i = 0; i < pixels.size(); ++i)
-            put_pixel(passes_[p], planes_[p], pixels[i], &layer.pixels[i * channels]);
-        out.push_back(std::move(layer));
+        if (!planes_[p].coverage)
+            out.push_back({passes_[p].name, passes_[p].channels, passes_[p].kind, {}});
     }
     return out;
+}
+
+void Film::put_row(const PixelWindow& part, int y, std::vector<Layer>& layers) const {
+    const auto width = static_cast<std::size_t>(part.width());
+    const std::size_t from = pixel(part.x0, y), to = static_cast<std::size_t>(y - part.y0) * width;
+    for (std::size_t x = 0; x < width; ++x) {
+        const Beauty& b = beauty_[from + x];
+        const double w = b.samples > 0 ? 1.0 / b.samples : 0.0;
+        float* const out = &layers[0].pixels[(to + x) * 4];
+        for (std::size_t c = 0; c < 3; ++c) out[c] = static_cast<float>(b.rgb[c].value() * w);
+        out[3] = static_cast<float>(b.hits * w);
+    }
+    auto layer = layers.begin() + 1;
+    for (std::size_t p = 0; p < passes_.size(); ++p) {
+        if (planes_[p].coverage) continue;
+        float* const out = &layer->pixels[to * layer->channels.size()];
+        for (std::size_t x = 0; x < width; ++x)
+            put_pixel(passes_[p], planes_[p], from + x, out + x * layer->channels.size());
+        ++layer;
+    }
 }
 
 bool Film::take_deep(const DeepPixelsState& state) {

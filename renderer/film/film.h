@@ -14,11 +14,14 @@
 #include "renderer/core/ray.h"
 #include "renderer/core/sum.h"
 #include "renderer/core/vec.h"
+#include "renderer/core/zeroed.h"
 #include "renderer/film/deep_pixels.h"
 #include "renderer/film/id_coverage.h"
 #include "renderer/film/pass.h"
 
 namespace tessera {
+
+class Workers;
 
 /// What one camera path gives to its pixel.
 struct PathSample {
@@ -74,7 +77,7 @@ public:
     /// depend on the order.
     void merge(const Film& other);
     /// Means of what was added; of coverage by names there is none.
-    std::vector<Layer> layers() const { return layers(window_); }
+    std::vector<Layer> layers(Workers& workers) const;
     /// The same of a part of the window; other threads may add outside it.
     std::vector<Layer> layers(const PixelWindow& part) const;
     /// What a pass of names counted; null for the others.
@@ -121,8 +124,8 @@ private:
         PassSource source = {};
         std::uint32_t events = 0;  // of the pass
         std::uint32_t width = 0;   // numbers a pixel
-        std::vector<Sum> sums;
-        std::vector<float> nearest;
+        ZeroedArray<Sum> sums;
+        ZeroedArray<float> nearest;
         std::optional<IdCoverage> coverage;
     };
     std::size_t pixel(int x, int y) const noexcept {
@@ -131,11 +134,13 @@ private:
     }
     void add_passes(std::size_t i, std::uint32_t index, const PathSample& s,
                     const PassSamples& passes, int lane) noexcept;
+    std::vector<Layer> outline() const;
+    void put_row(const PixelWindow& part, int y, std::vector<Layer>& layers) const;
     void put_pixel(const Pass& pass, const Plane& plane, std::size_t i, float* out) const;
 
     PixelWindow window_;
     Passes passes_;
-    std::vector<Beauty> beauty_;
+    ZeroedArray<Beauty> beauty_;
     std::vector<Nearest> nearest_;
     std::vector<Plane> planes_;  // as passes_
     std::optional<DeepPixels> deep_;

@@ -228,7 +228,7 @@ private:
         r.image.height = scene_.film().height;
         r.image.window = window_;
         r.image.working_space = scene_.film().working_space;
-        r.image.layers = film_.layers();
+        r.image.layers = film_.layers(workers_);
         if (film_.deep()) r.deep = deep_image();
         r.stats = scene_.statistics();
         Statistics& s = r.stats;

@@ -121,7 +121,7 @@ TEST_CASE("resume: ranges of samples merge into the bits of the whole, in any or
     all.film_file = folder / "2.tsf";
     render(*whole, all);
     FilmFile straight = read_film_file(all.film_file);
-    const std::vector<Layer> a = sum.layers(), b = straight.film.layers();
+    const std::vector<Layer> a = sum.layers(sum.window()), b = straight.film.layers(sum.window());
     CHECK(same(a, b));
     CHECK(states_of(sum).coverage == states_of(straight.film).coverage);
 }
