@@ -12,6 +12,7 @@
 
 #include "renderer/api/deep.h"
 #include "renderer/api/image.h"
+#include "renderer/api/picture_error.h"
 #include "renderer/api/scene_desc.h"
 
 namespace tessera {
@@ -82,6 +83,8 @@ struct Statistics {
     std::vector<LeftOut> left_out;
     std::vector<std::string> warnings, notes;
     bool complete = true;
+    ErrorEstimate error;                  // of beauty
+    std::vector<ErrorPoint> error_curve;  // of beauty
 };
 
 /// The statistics file (docs/stats.schema.json), as JSON text.
@@ -124,6 +127,7 @@ struct RenderSettings {
     int tile = 32;      // pixels, a multiple of 4
     double time_s = 0;  // > 0: passes until so many seconds are used; spp is then the upper bound
     bool deep = false;  // also beauty apart by depth
+    bool error_estimate = true;  // say how wrong the picture is; the samples do not depend on it
     const std::atomic<bool>* cancel = nullptr;
     std::function<void(const Progress&)> progress;  // called from one thread at a time
     /// A tile of a pass is finished: its pixels so far, to be copied. Called by several at a time.

@@ -7,6 +7,7 @@
 #include "renderer/cli/commands.h"
 #include "renderer/cli/console.h"
 #include "renderer/cli/scene_options.h"
+#include "renderer/core/cpu_time.h"
 #include "renderer/core/log.h"
 #include "renderer/integrator/replay.h"
 

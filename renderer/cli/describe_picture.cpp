@@ -5,6 +5,8 @@
 #include <array>
 #include <ctime>
 
+#include "renderer/cli/say_error.h"
+
 namespace tessera {
 namespace {
 
@@ -37,6 +39,7 @@ void describe_picture(LayeredImage& image, const std::string& scene_hash, const 
     m.emplace_back("tessera/embreeIsa", s.isa);
     m.emplace_back("tessera/colorSpace", image.working_space);
     if (!s.complete) m.emplace_back("tessera/partial", 1);
+    add_error_metadata(image, s.error);
     if (format.deterministic_metadata) return;
     m.emplace_back("tessera/seconds", static_cast<float>(s.resumed_s + s.render_s));
     if (s.threads > 0) m.emplace_back("tessera/threads", s.threads);

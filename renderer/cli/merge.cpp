@@ -10,7 +10,10 @@
 #include "renderer/cli/output_check.h"
 #include "renderer/cli/output_options.h"
 #include "renderer/cli/picture_files.h"
+#include "renderer/cli/say_error.h"
 #include "renderer/core/log.h"
+#include "renderer/core/parallel.h"
+#include "renderer/error/estimate.h"
 #include "renderer/film/film_file.h"
 #include "renderer/film/film_parts.h"
 #include "renderer/film/mattes.h"
@@ -115,7 +118,7 @@ bool check(const std::vector<Part>& parts, const std::vector<SampleBox>& boxes,
 
 FilmFile merge(const std::vector<Part>& parts, const SampleBox& whole) {
     const FilmHeader& first = parts.front().header;
-    FilmFile all{first, Film(whole.window, first.passes, first.deep)};
+    FilmFile all{first, Film(whole.window, first.passes, first.extras)};
     FilmHeader& h = all.header;
     h.window = whole.window;
     h.seconds = 0, h.parts = 0;
@@ -148,6 +151,12 @@ Statistics statistics_of(const FilmHeader& h, bool complete) {
     return s;
 }
 
+ErrorEstimate error_of(const Film& film) {
+    if (film.replicates().counts.empty()) return {};
+    Workers workers;
+    return estimate_error(film.replicates(), film.window(), workers);
+}
+
 LayeredImage picture_of(FilmFile& all) {
     const FilmHeader& h = all.header;
     LayeredImage image;
@@ -170,8 +179,10 @@ WriteReport write(FilmFile& all, bool complete, const MergeOptions& o, const std
     o.out.apply(format);
     LayeredImage image;
     if (!film || !o.preview.empty() || !o.deep.empty()) image = picture_of(all);
-    describe_picture(image, all.header.scene_hash, statistics_of(all.header, complete), command,
-                     format.output);
+    Statistics stats = statistics_of(all.header, complete);
+    stats.error = error_of(all.film);
+    if (stats.error.asked) log_info("error    " + to_text(stats.error));
+    describe_picture(image, all.header.scene_hash, stats, command, format.output);
     if (!format.output.deterministic_metadata)
         image.metadata.emplace_back("tessera/parts", all.header.parts);
     WriteReport report = write_picture_files(
@@ -192,7 +203,7 @@ int run_merge(const MergeOptions& o, const std::string& command) {
                                           {o.deep, "--deep", {".exr"}}};
     check_outputs(outputs);
     const std::vector<Part> parts = read_parts(o);
-    if (!o.deep.empty() && !parts.front().header.deep)
+    if (!o.deep.empty() && !parts.front().header.extras.deep)
         refuse("--deep: " + parts.front().path + " keeps no depths; render parts with --deep too");
     if (!o.preview.empty()) check_view(parts.front().header.working_space, o.view);
     std::vector<SampleBox> boxes;

@@ -16,6 +16,7 @@
 #include "renderer/cli/output_options.h"
 #include "renderer/cli/picture_files.h"
 #include "renderer/cli/progress.h"
+#include "renderer/cli/say_error.h"
 #include "renderer/cli/scene_options.h"
 #include "renderer/cli/signals.h"
 #include "renderer/cli/snapshots.h"
@@ -37,7 +38,7 @@ struct RenderOptions {
     std::string output, preview, view, stats, display, deep;
     std::string progress = "auto", crypto_manifest = "embedded";
     double time_s = 0;
-    bool no_progress = false, quiet = false;
+    bool no_progress = false, quiet = false, no_error = false;
     int verbose = 0;
 };
 
@@ -82,9 +83,11 @@ void say_what_was_built(const Statistics& s, double load_s, bool quiet) {
 void say_what_the_film_takes(const Scene& scene, const RenderOptions& o) {
     const FilmDesc& film = scene.film();
     const PixelWindow window = film.crop ? *film.crop : PixelWindow{0, 0, film.width, film.height};
-    const std::uint64_t bytes = Film::expected_bytes(window, scene.passes(), !o.deep.empty());
-    log_info(fmt::format("film     {}x{}, beauty{} and {} passes, {:.1f} MiB{}", window.width(),
-                         window.height(), o.deep.empty() ? "" : ", depths", scene.passes().size(),
+    const std::uint64_t bytes =
+        Film::expected_bytes(window, scene.passes(), {!o.deep.empty(), !o.no_error});
+    log_info(fmt::format("film     {}x{}, beauty{}{} and {} passes, {:.1f} MiB{}", window.width(),
+                         window.height(), o.no_error ? "" : " four times",
+                         o.deep.empty() ? "" : ", depths", scene.passes().size(),
                          static_cast<double>(bytes) / (1 << 20),
                          o.runs.checkpoint.empty() ? "" : " and as much for checkpoints"));
 }
@@ -99,6 +102,7 @@ void say_what_was_rendered(const Statistics& s) {
     log_info(fmt::format("render   {} spp{} in {:.2f} s, {}samples/s, {}rays/s ({} threads)", s.spp,
                          before, s.render_s, per_second(s.samples), per_second(s.rays.total()),
                          s.threads));
+    if (s.error.asked) log_info("error    " + to_text(s.error));
     if (s.checkpoints + s.checkpoints_failed > 0)
         log_verbose(fmt::format(
             "{} checkpoints, {} failed, one every {:.3g} s; the render rested {:.3g} s for them",
@@ -167,6 +171,7 @@ RenderResult render_with_progress(const Scene& scene, const RenderOptions& o, do
     settings.tile = o.scene.tile;
     settings.time_s = time_s;
     settings.deep = !o.deep.empty();
+    settings.error_estimate = !o.no_error;
     settings.cancel = &stop_at_next_tile();
     settings.progress = [&](const Progress& p) { printer.show(p); };
     settings.snapshot = &snapshot_wanted();
@@ -326,6 +331,8 @@ void add_render(Command app, CommandLine& line) {
         .one_of({"embedded", "sidecar"});
     sub.option("--progress", o->progress, "auto, bar, line, json, tractor or none")
         .one_of(progress_styles());
+    sub.flag("--no-error-estimate", o->no_error,
+             "Do not say how wrong the picture is: 160 bytes a pixel less; the same picture");
     sub.flag("--no-progress", o->no_progress, "As --progress none");
     sub.flag("-v,--verbose", o->verbose, "Say more");
     sub.flag("-q,--quiet", o->quiet, "Say nothing but errors");

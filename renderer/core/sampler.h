@@ -49,6 +49,10 @@ constexpr std::uint32_t pixel_seed(int x, int y, std::uint64_t seed) {
                         static_cast<std::uint32_t>(y) ^ 0x68bc21ebu);
 }
 
+/// A picture is the mean of so many independent ones: sample n belongs to replicate n modulo this,
+/// each of which has its own scrambles. How far they are apart tells the error (renderer/error).
+inline constexpr int kReplicates = 4;
+
 struct SamplePairs {
     float x[kLanes];
     float y[kLanes];

@@ -22,8 +22,38 @@ const char* to_string(InvalidCause cause) {
     return "unknown";
 }
 
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json interval_json(const Interval& i) {
+    return {{"value", i.value}, {"low", i.low}, {"high", i.high}, {"reliable", i.reliable}};
+}
+
+// null where a picture says nothing of its error.
+ordered_json error_json(const ErrorEstimate& e, const std::vector<ErrorPoint>& curve) {
+    if (!e.known) return nullptr;
+    ordered_json worst = interval_json(e.worst_tile);
+    worst["window"] = {e.tile.x0, e.tile.y0, e.tile.x1, e.tile.y1};
+    ordered_json points = ordered_json::array();
+    for (const ErrorPoint& p : curve)
+        points.push_back({{"spp", p.spp},
+                          {"wall", p.wall_s},
+                          {"cpu", p.cpu_s},
+                          {"rmse", interval_json(p.rmse)},
+                          {"relmse", interval_json(p.relmse)}});
+    return {{"rmse", interval_json(e.rmse)},
+            {"relmse", interval_json(e.relmse)},
+            {"epsilon", e.epsilon},
+            {"worst_tile", worst},
+            {"largest_share", e.largest_share},
+            {"cautions", e.cautions},
+            {"curve", points}};
+}
+
+}  // namespace
+
 std::string to_json(const Statistics& s) {
-    using nlohmann::ordered_json;
     const auto rate = [](std::uint64_t n, double seconds) {
         return seconds > 0 ? static_cast<double>(n) / seconds : 0.0;
     };
@@ -100,6 +130,7 @@ std::string to_json(const Statistics& s) {
           {"in_cache", s.textures_cached},
           {"cache_read_bytes", s.texture_bytes_read},
           {"failed_lookups", s.texture_failures}}},
+        {"error", {{"beauty", error_json(s.error, s.error_curve)}}},
         {"invalid", invalid},
         {"half", {{"clamped", s.half_clamped}, {"non_finite", s.half_non_finite}}},
         {"left_out", left_out},

@@ -74,12 +74,16 @@ void PassSamples::clear() {
     std::fill(event_albedos.begin(), event_albedos.end(), Color(0.0f));
 }
 
-Film::Film(const PixelWindow& window, Passes passes, bool deep)
-    : window_(window), passes_(std::move(passes)), planes_(passes_.size()) {
+Film::Film(const PixelWindow& window, Passes passes, FilmExtras extras)
+    : window_(window),
+      passes_(std::move(passes)),
+      replicates_(extras.replicates),
+      planes_(passes_.size()) {
     const std::size_t n =
         static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
-    beauty_.resize(n);
-    if (deep) deep_.emplace(n);
+    beauty_.resize(of_pixel(n, 0));
+    counts_.resize(n);
+    if (extras.deep) deep_.emplace(n);
     if (std::any_of(passes_.begin(), passes_.end(), wants_nearest)) nearest_.resize(n);
     for (std::size_t p = 0; p < passes_.size(); ++p) {
         const Pass& pass = passes_[p];
@@ -94,6 +98,19 @@ Film::Film(const PixelWindow& window, Passes passes, bool deep)
     }
 }
 
+Sum Film::beauty(std::size_t i, int channel) const noexcept {
+    Sum sum;
+    const std::size_t first = of_pixel(i, 0), end = of_pixel(i + 1, 0);
+    for (std::size_t k = first; k < end; k += 3)
+        sum.add(beauty_[k + static_cast<std::size_t>(channel)]);
+    return sum;
+}
+
+ReplicateView Film::replicates() const noexcept {
+    if (!replicates_) return {};
+    return {window_.width(), window_.height(), beauty_, counts_};
+}
+
 PassSamples Film::pass_samples() const {
     PassSamples s;
     s.light.resize(static_cast<std::size_t>(light_passes_ * kLanes));
@@ -104,10 +121,10 @@ PassSamples Film::pass_samples() const {
 void Film::add(int x, int y, std::uint32_t index, const PathSample& s, const PassSamples* passes,
                int lane) noexcept {
     const std::size_t i = pixel(x, y);
-    Beauty& b = beauty_[i];
-    tessera::add(b.rgb, s.radiance);
-    b.hits += s.alpha > 0.0f;
-    ++b.samples;
+    const std::uint32_t replicate = index % kReplicates;
+    tessera::add(&beauty_[of_pixel(i, replicate)], s.radiance);
+    counts_[i].hits += s.alpha > 0.0f;
+    ++counts_[i].samples[replicate];
     if (passes) add_passes(i, index, s, *passes, lane);
     if (deep_ && s.alpha > 0.0f)
         deep_->add(i, passes->first[lane].z, s.radiance);
@@ -216,9 +233,10 @@ void Film::merge(const Film& other) {
     for (int y = w.y0; y < w.y1; ++y) {
         for (int x = w.x0; x < w.x1; ++x) {
             const std::size_t to = pixel(x, y), from = other.pixel(x, y);
-            for (int c = 0; c < 3; ++c) beauty_[to].rgb[c].add(other.beauty_[from].rgb[c]);
-            beauty_[to].hits += other.beauty_[from].hits;
-            beauty_[to].samples += other.beauty_[from].samples;
+            const std::size_t width = of_pixel(1, 0);
+            for (std::size_t k = 0; k < width; ++k)
+                beauty_[to * width + k].add(other.beauty_[from * width + k]);
+            counts_[to].add(other.counts_[from]);
             if (deep_) deep_->merge(to, *other.deep_, from);
             bool nearer = false;
             if (!nearest_.empty()) {
@@ -270,11 +288,11 @@ void Film::put_row(const PixelWindow& part, int y, std::vector<Layer>& layers) c
     const auto width = static_cast<std::size_t>(part.width());
     const std::size_t from = pixel(part.x0, y), to = static_cast<std::size_t>(y - part.y0) * width;
     for (std::size_t x = 0; x < width; ++x) {
-        const Beauty& b = beauty_[from + x];
-        const double w = b.samples > 0 ? 1.0 / b.samples : 0.0;
+        const PixelCounts& n = counts_[from + x];
+        const double w = n.total() > 0 ? 1.0 / n.total() : 0.0;
         float* const out = &layers[0].pixels[(to + x) * 4];
-        for (std::size_t c = 0; c < 3; ++c) out[c] = static_cast<float>(b.rgb[c].value() * w);
-        out[3] = static_cast<float>(b.hits * w);
+        for (int c = 0; c < 3; ++c) out[c] = static_cast<float>(beauty(from + x, c).value() * w);
+        out[3] = static_cast<float>(n.hits * w);
     }
     auto layer = layers.begin() + 1;
     for (std::size_t p = 0; p < passes_.size(); ++p) {
@@ -288,10 +306,10 @@ void Film::put_row(const PixelWindow& part, int y, std::vector<Layer>& layers) c
 
 bool Film::take_deep(const DeepPixelsState& state) {
     std::optional<DeepPixels> read = DeepPixels::from(state);
-    bool fits = read && read->pixels() == beauty_.size();
-    for (std::size_t i = 0; fits && i < beauty_.size(); ++i) {
+    bool fits = read && read->pixels() == counts_.size();
+    for (std::size_t i = 0; fits && i < counts_.size(); ++i) {
         const DeepPixels::Counts n = read->counts(i);
-        fits = n.hits == beauty_[i].hits && n.hits + n.background <= beauty_[i].samples;
+        fits = n.hits == counts_[i].hits && n.hits + n.background <= counts_[i].total();
     }
     if (fits) deep_ = std::move(read);
     return fits;
@@ -300,29 +318,29 @@ bool Film::take_deep(const DeepPixelsState& state) {
 DeepImage Film::deep_image() const {
     DeepImage image;
     image.window = window_;
-    for (std::size_t i = 0; deep_ && i < beauty_.size(); ++i)
-        image.counts.push_back(deep_->put(i, beauty_[i].samples, image.samples));
+    for (std::size_t i = 0; deep_ && i < counts_.size(); ++i)
+        image.counts.push_back(deep_->put(i, counts_[i].total(), image.samples));
     return image;
 }
 
 std::vector<std::uint32_t> Film::sample_counts() const {
     std::vector<std::uint32_t> out;
-    out.reserve(beauty_.size());
-    for (const Beauty& b : beauty_) out.push_back(b.samples);
+    out.reserve(counts_.size());
+    for (const PixelCounts& n : counts_) out.push_back(n.total());
     return out;
 }
 
 void Film::put_pixel(const Pass& pass, const Plane& plane, std::size_t i, float* out) const {
     const std::size_t channels = pass.channels.size();
-    const Beauty& b = beauty_[i];
-    const double each = b.samples > 0 ? 1.0 / b.samples : 0.0;
+    const std::uint32_t samples = counts_[i].total(), hits = counts_[i].hits;
+    const double each = samples > 0 ? 1.0 / samples : 0.0;
     const Sum* const sums = plane.sums.data() + i * sums_of(pass);
     switch (pass.source) {
         case PassSource::z:
             *out = std::min(nearest_[i].z, kEmptyDepth);
             return;
         case PassSource::sample_count:
-            *out = static_cast<float>(b.samples);
+            *out = static_cast<float>(samples);
             return;
         case PassSource::seconds:
             *out = static_cast<float>(sums->value());
@@ -334,7 +352,7 @@ void Film::put_pixel(const Pass& pass, const Plane& plane, std::size_t i, float*
         }
         case PassSource::variance:
             for (std::size_t c = 0; c < channels; ++c) {
-                const double sum = b.rgb[c].value(), count = b.samples;
+                const double sum = beauty(i, static_cast<int>(c)).value(), count = samples;
                 const double v =
                     count > 1 ? (sums[c].value() - sum * sum * each) / (count * (count - 1)) : 0.0;
                 out[c] = static_cast<float>(std::max(v, 0.0));
@@ -348,7 +366,7 @@ void Film::put_pixel(const Pass& pass, const Plane& plane, std::size_t i, float*
         return;
     }
     // Colour is premultiplied by coverage as beauty is; data is the mean over what was hit.
-    const double hit = b.hits > 0 ? 1.0 / b.hits : 0.0;
+    const double hit = hits > 0 ? 1.0 / hits : 0.0;
     const double w = pass.kind == LayerKind::color ? each : hit;
     const bool albedo =
         pass.source == PassSource::albedo || pass.source == PassSource::event_albedo;
@@ -360,7 +378,7 @@ void Film::put_pixel(const Pass& pass, const Plane& plane, std::size_t i, float*
 }
 
 std::size_t Film::bytes() const noexcept {
-    std::size_t sum = capacity_bytes(beauty_) + capacity_bytes(nearest_);
+    std::size_t sum = capacity_bytes(beauty_) + capacity_bytes(counts_) + capacity_bytes(nearest_);
     if (deep_) sum += deep_->bytes();
     for (const Plane& p : planes_) {
         sum += capacity_bytes(p.sums) + capacity_bytes(p.nearest);
@@ -369,11 +387,12 @@ std::size_t Film::bytes() const noexcept {
     return sum;
 }
 
-std::uint64_t Film::expected_bytes(const PixelWindow& window, const Passes& passes, bool deep) {
+std::uint64_t Film::expected_bytes(const PixelWindow& window, const Passes& passes,
+                                   FilmExtras extras) {
     const std::uint64_t n =
         static_cast<std::uint64_t>(window.width()) * static_cast<std::uint64_t>(window.height());
-    std::uint64_t sum = deep ? n * DeepPixels::kBytesOfOneDepth : 0;
-    for (const ArraySize& a : array_sizes(window, passes)) sum += a.bytes;
+    std::uint64_t sum = extras.deep ? n * DeepPixels::kBytesOfOneDepth : 0;
+    for (const ArraySize& a : array_sizes(window, passes, extras)) sum += a.bytes;
     for (const Pass& p : passes)
         if (how(p.source) == How::coverage) sum += n * IdCoverage::kBytesOfOneName;
     return sum;
@@ -381,20 +400,24 @@ std::uint64_t Film::expected_bytes(const PixelWindow& window, const Passes& pass
 
 std::vector<Film::Array> Film::arrays() {
     std::vector<Array> out;
-    const std::vector<ArraySize> sizes = array_sizes(window_, passes_);
+    const std::vector<ArraySize> sizes =
+        array_sizes(window_, passes_, {deep_.has_value(), replicates_});
     const auto add = [&](auto& v) {
         if (!v.empty()) out.push_back({sizes[out.size()].name, bytes_of(v)});
     };
-    add(beauty_);
+    add(beauty_), add(counts_);
     add(nearest_);
     for (Plane& plane : planes_) add(plane.sums), add(plane.nearest);
     return out;
 }
 
-std::vector<Film::ArraySize> Film::array_sizes(const PixelWindow& window, const Passes& passes) {
+std::vector<Film::ArraySize> Film::array_sizes(const PixelWindow& window, const Passes& passes,
+                                               FilmExtras extras) {
     const std::uint64_t n =
         static_cast<std::uint64_t>(window.width()) * static_cast<std::uint64_t>(window.height());
-    std::vector<ArraySize> out{{"beauty", n * sizeof(Beauty)}};
+    const std::uint64_t sums = extras.replicates ? 3 * kReplicates : 3;
+    std::vector<ArraySize> out{{"beauty", n * sums * sizeof(Sum)},
+                               {"counts", n * sizeof(PixelCounts)}};
     if (std::any_of(passes.begin(), passes.end(), wants_nearest))
         out.push_back({"nearest", n * sizeof(Nearest)});
     for (const Pass& p : passes) {

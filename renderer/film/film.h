@@ -15,7 +15,9 @@
 #include "renderer/core/sum.h"
 #include "renderer/core/vec.h"
 #include "renderer/core/zeroed.h"
+#include "renderer/error/replicates.h"
 #include "renderer/film/deep_pixels.h"
+#include "renderer/film/film_extras.h"
 #include "renderer/film/id_coverage.h"
 #include "renderer/film/pass.h"
 
@@ -58,8 +60,7 @@ class Film {
 public:
     static constexpr float kEmptyDepth = 1e10f;
 
-    /// deep: also keeps beauty apart by depth.
-    Film(const PixelWindow& window, Passes passes, bool deep = false);
+    Film(const PixelWindow& window, Passes passes, FilmExtras extras = {});
 
     const PixelWindow& window() const noexcept { return window_; }
     const Passes& passes() const noexcept { return passes_; }
@@ -72,7 +73,7 @@ public:
     void add(int x, int y, std::uint32_t index, const PathSample& s, const PassSamples* passes,
              int lane) noexcept;
     /// Samples that the pixel has.
-    std::uint32_t samples(int x, int y) const noexcept { return beauty_[pixel(x, y)].samples; }
+    std::uint32_t samples(int x, int y) const noexcept { return counts_[pixel(x, y)].total(); }
     /// Adds a film of the same passes whose window lies within this one; the bits of the sum do not
     /// depend on the order.
     void merge(const Film& other);
@@ -84,6 +85,8 @@ public:
     IdCoverage* coverage(std::size_t pass) noexcept {
         return planes_[pass].coverage ? &*planes_[pass].coverage : nullptr;
     }
+    /// Empty unless they are kept.
+    ReplicateView replicates() const noexcept;
     const DeepPixels* deep() const noexcept { return deep_ ? &*deep_ : nullptr; }
     /// Depths that go with what arrays() holds already; false if they do not.
     bool take_deep(const DeepPixelsState& state);
@@ -93,7 +96,8 @@ public:
     std::vector<std::uint32_t> sample_counts() const;
     std::size_t bytes() const noexcept;
     /// Of a film before it is made: edges of things and depths will add to it.
-    static std::uint64_t expected_bytes(const PixelWindow& window, const Passes& passes, bool deep);
+    static std::uint64_t expected_bytes(const PixelWindow& window, const Passes& passes,
+                                        FilmExtras extras);
 
     /// All that the film holds but coverage and depths, as named arrays of plain numbers: what a
     /// checkpoint saves.
@@ -107,13 +111,10 @@ public:
         std::string name;
         std::uint64_t bytes = 0;
     };
-    static std::vector<ArraySize> array_sizes(const PixelWindow& window, const Passes& passes);
+    static std::vector<ArraySize> array_sizes(const PixelWindow& window, const Passes& passes,
+                                              FilmExtras extras);
 
 private:
-    struct Beauty {
-        Sum rgb[3];
-        std::uint32_t hits = 0, samples = 0;
-    };
     struct Nearest {
         float z = kInfinity;
         std::uint32_t sample = 0;  // of equally near ones the first
@@ -140,7 +141,14 @@ private:
 
     PixelWindow window_;
     Passes passes_;
-    ZeroedArray<Beauty> beauty_;
+    // Sums of beauty: [pixel][replicate][channel], or [pixel][channel].
+    Sum beauty(std::size_t i, int channel) const noexcept;
+    std::size_t of_pixel(std::size_t i, std::uint32_t replicate) const noexcept {
+        return 3 * (replicates_ ? i * kReplicates + replicate : i);
+    }
+    bool replicates_;
+    ZeroedArray<Sum> beauty_;
+    ZeroedArray<PixelCounts> counts_;
     std::vector<Nearest> nearest_;
     std::vector<Plane> planes_;  // as passes_
     std::optional<DeepPixels> deep_;

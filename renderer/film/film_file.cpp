@@ -38,7 +38,7 @@ struct Expected {
 
 std::vector<Expected> expected_arrays(const FilmHeader& h) {
     std::vector<Expected> out;
-    for (const Film::ArraySize& a : Film::array_sizes(h.window, h.passes))
+    for (const Film::ArraySize& a : Film::array_sizes(h.window, h.passes, h.extras))
         out.push_back({a.name, a.bytes});
     for (const Pass& p : h.passes) {
         if (!counts_names(p)) continue;
@@ -47,7 +47,7 @@ std::vector<Expected> expected_arrays(const FilmHeader& h) {
             out.push_back({p.name + name, std::nullopt, sizeof v[0]});
         });
     }
-    if (h.deep) {
+    if (h.extras.deep) {
         DeepPixelsState none;
         each_deep_array(none, [&](const char* name, const auto& v) {
             out.push_back({name, std::nullopt, sizeof v[0]});
@@ -115,7 +115,7 @@ std::uint64_t write_film_file(const std::string& path, const FilmHeader& header,
             named.push_back({p.name + name, std::as_bytes(std::span(v))});
         });
     }
-    if (header.deep) {
+    if (header.extras.deep) {
         each_deep_array(*states.deep, [&](const char* name, const auto& v) {
             named.push_back({name, std::as_bytes(std::span(v))});
         });
@@ -132,7 +132,7 @@ FilmHeader read_film_header(const std::string& path) { return header_of(ArrayFil
 FilmFile read_film_file(const std::string& path) {
     ArrayFile file(path);
     FilmHeader header = header_of(file);
-    Film film(header.window, header.passes, header.deep);
+    Film film(header.window, header.passes, header.extras);
     std::vector<std::span<std::byte>> into;
     for (const Film::Array& a : film.arrays()) into.push_back(a.bytes);
     const auto names = std::count_if(header.passes.begin(), header.passes.end(), counts_names);
@@ -143,7 +143,7 @@ FilmFile read_film_file(const std::string& path) {
     };
     for (IdCoverageState& state : coverage) each_array(state, room);
     DeepPixelsState deep;
-    if (header.deep) each_deep_array(deep, room);
+    if (header.extras.deep) each_deep_array(deep, room);
     file.read(into);
     auto state = coverage.begin();
     for (std::size_t p = 0; p < header.passes.size(); ++p) {
@@ -154,7 +154,7 @@ FilmFile read_film_file(const std::string& path) {
             file.fail("is damaged: its counts of names contradict each other");
         *film.coverage(p) = std::move(*read);
     }
-    if (header.deep && !film.take_deep(deep))
+    if (header.extras.deep && !film.take_deep(deep))
         file.fail("is damaged: its depths contradict each other");
     const SampleCounts counts = sample_range(film);
     if (counts.least != header.least || counts.most != header.most)

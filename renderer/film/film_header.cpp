@@ -178,7 +178,8 @@ std::string to_json(const FilmHeader& h) {
         {"window", {h.window.x0, h.window.y0, h.window.x1, h.window.y1}},
         {"seed", h.seed},
         {"passes", passes},
-        {"deep", h.deep},
+        {"deep", h.extras.deep},
+        {"replicates", h.extras.replicates},
         {"first_sample", h.first_sample},
         {"least_samples", h.least},
         {"most_samples", h.most},
@@ -210,7 +211,7 @@ FilmHeader film_header_from(const std::string& text) {
         if (pass.channels.empty() || pass.channels.size() > most || h.passes.size() > kMaxPasses)
             throw std::runtime_error("passes that no scene has");
     }
-    h.deep = j.at("deep");
+    h.extras = {j.at("deep"), j.at("replicates")};
     constexpr int kMost = std::numeric_limits<int>::max();
     h.first_sample = small(j, "first_sample", 0, kMost);
     h.least = static_cast<std::uint32_t>(whole(j, "least_samples", 0, kMost));
@@ -235,8 +236,13 @@ std::optional<FilmDifference> difference(const FilmHeader& a, const FilmHeader& 
     if (const auto d = unequal("resolution", size(a), size(b))) return d;
     if (const auto d = unequal("seed", std::to_string(a.seed), std::to_string(b.seed))) return d;
     if (const auto d = pass_difference(a.passes, b.passes)) return d;
-    const auto depths = [](const FilmHeader& h) { return h.deep ? "kept" : "not kept"; };
-    if (a.deep != b.deep) return FilmDifference{"set of depths (--deep)", depths(a), depths(b)};
+    const auto kept = [](bool yes) { return yes ? "kept" : "not kept"; };
+    const FilmExtras &x = a.extras, &y = b.extras;
+    if (x.deep != y.deep)
+        return FilmDifference{"set of depths (--deep)", kept(x.deep), kept(y.deep)};
+    if (x.replicates != y.replicates)
+        return FilmDifference{"set of replicates (--no-error-estimate)", kept(x.replicates),
+                              kept(y.replicates)};
     if (const auto d = unequal("working space", a.working_space, b.working_space)) return d;
     if (const auto d = unequal("instruction set (--isa)", a.isa, b.isa)) return d;
     if (const auto d = unequal("hash of the scene and its files", a.scene_hash, b.scene_hash))

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "renderer/api/image.h"
+#include "renderer/film/film_extras.h"
 #include "renderer/film/pass.h"
 
 namespace tessera {
@@ -23,7 +24,7 @@ struct FilmHeader {
     PixelWindow window;
     std::uint64_t seed = 0;
     Passes passes;
-    bool deep = false;                            // beauty apart by depth too
+    FilmExtras extras;
     std::vector<std::vector<std::uint32_t>> ids;  // of passes that count names: theirs, by key
     int first_sample = 0;                         // index
     std::uint32_t least = 0, most = 0;            // samples of a pixel

@@ -1,5 +1,6 @@
 #include "renderer/integrator/block.h"
 
+#include <algorithm>
 #include <tuple>
 
 #include "renderer/core/sampler.h"
@@ -35,9 +36,19 @@ LaneMask lanes_inside(const PixelWindow& w, int x, int y) noexcept {
     return lanes;
 }
 
-void seed_block(BlockJob& job, std::uint64_t seed) noexcept {
-    for (int lane = 0; lane < kLanes; ++lane)
-        job.seeds[lane] = pixel_seed(lane_x(job, lane), lane_y(job, lane), seed);
+BlockSeeds block_seeds(const BlockJob& job, std::uint64_t seed) noexcept {
+    BlockSeeds out;
+    for (int lane = 0; lane < kLanes; ++lane) {
+        const std::uint32_t pixel = pixel_seed(lane_x(job, lane), lane_y(job, lane), seed);
+        for (std::uint32_t r = 0; r < kReplicates; ++r) out.of[r][lane] = hash_combine(pixel, r);
+    }
+    return out;
+}
+
+void choose_sample(BlockJob& job, const BlockSeeds& seeds, std::uint32_t sample) noexcept {
+    job.sample = sample;
+    job.index = sample / kReplicates;
+    std::copy_n(seeds.of[sample % kReplicates], kLanes, job.seeds);
 }
 
 void film_points(const BlockJob& job, SamplePairs& out) noexcept {

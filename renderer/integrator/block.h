@@ -41,8 +41,9 @@ struct BlockJob {
     PathPasses* passes = nullptr;  // null: beauty alone
     int x = 0, y = 0;              // top left pixel, multiples of 4
     LaneMask lanes = kAllLanes;
-    std::uint32_t index = 0;        // of the sample
-    std::uint32_t seeds[kLanes]{};  // of the pixels
+    std::uint32_t sample = 0;       // of the pixels: the how manieth
+    std::uint32_t index = 0;        // of the point in its replicate's sequences
+    std::uint32_t seeds[kLanes]{};  // of these
     RayLog* log = nullptr;          // takes down every ray, for the benchmark
 };
 
@@ -54,8 +55,13 @@ using BlockKernel = void (*)(const BlockJob& job, BlockSamples& out, Counters& c
 /// The kernel of a name ("basic", "surface", "full") for an integrator.
 BlockKernel find_kernel(Integrator integrator, std::string_view name);
 
-/// Seeds of a block's pixels.
-void seed_block(BlockJob& job, std::uint64_t seed) noexcept;
+/// Seeds of a block's pixels, by replicate.
+struct BlockSeeds {
+    std::uint32_t of[kReplicates][kLanes];
+};
+BlockSeeds block_seeds(const BlockJob& job, std::uint64_t seed) noexcept;
+/// Sets sample, index and seeds.
+void choose_sample(BlockJob& job, const BlockSeeds& seeds, std::uint32_t sample) noexcept;
 
 /// Numbers that decide partial opacity for the rays of one step.
 inline void ray_seeds(const BlockJob& job, std::uint32_t step,

@@ -18,7 +18,7 @@ int PassPlan::next(int done, double elapsed_s) const {
     if (rest <= 0) return 0;
     if (time_s_ > 0) return std::min(affordable(elapsed_s), rest);
     int end = 1;
-    while (end <= done) end = kGrowth * end + 1;
+    while (end <= done) end *= kGrowth;
     return std::min(end - done, rest);
 }
 

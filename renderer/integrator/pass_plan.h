@@ -3,10 +3,11 @@
 
 namespace tessera {
 
-/// Without a time passes grow fourfold: an early stop leaves an even picture, and the estimate of
-/// the end is soon good. With a time none is planned to take more than half of what is left, so
-/// that not even a machine that gets twice as slow is late; at the end single samples are, by at
-/// most kLate of the time if a sample takes up to a quarter more than its predecessors.
+/// Without a time passes end at powers of four, where the sequences of all replicates are whole: an
+/// early stop leaves an even picture, and the estimate of the end is soon good. With a time none is
+/// planned to take more than half of what is left, so that not even a machine that gets twice as
+/// slow is late; at the end single samples are, by at most kLate of the time if a sample takes up
+/// to a quarter more than its predecessors.
 class PassPlan {
 public:
     static constexpr double kLate = 0.03;

@@ -7,12 +7,14 @@
 #include <chrono>
 #include <mutex>
 
+#include "renderer/core/cpu_time.h"
 #include "renderer/core/parallel.h"
 #include "renderer/film/film.h"
 #include "renderer/film/film_file.h"
 #include "renderer/film/mattes.h"
 #include "renderer/integrator/block.h"
 #include "renderer/integrator/checkpoints.h"
+#include "renderer/integrator/error_watch.h"
 #include "renderer/integrator/pass_plan.h"
 #include "renderer/integrator/path_passes.h"
 #include "renderer/integrator/resume.h"
@@ -33,8 +35,9 @@ public:
         : scene_(scene),
           settings_(settings),
           window_(window_of(scene.film())),
-          film_(settings.resume.empty() ? Film(window_, scene.passes(), settings.deep)
-                                        : resumed_film(scene, window_, settings, resumed_s_)),
+          film_(settings.resume.empty()
+                    ? Film(window_, scene.passes(), {settings.deep, settings.error_estimate})
+                    : resumed_film(scene, window_, settings, resumed_s_)),
           header_(film_header(scene, window_, settings)),
           times_(std::any_of(scene.passes().begin(), scene.passes().end(),
                              [](const Pass& p) { return p.source == PassSource::seconds; })),
@@ -55,6 +58,8 @@ public:
             if (stopped_) break;
             done += count;
             plan.took(count, seconds_since(start));
+            error_.look(film_, workers_, done, seconds_since(start_),
+                        process_cpu_seconds() - cpu_start_);
         }
         save();
         return finish(done);
@@ -166,7 +171,6 @@ private:
             for (int x = tile.x0 & ~(kBlockSize - 1); whole && x < tile.x1; x += kBlockSize) {
                 job.x = x, job.y = y;
                 job.lanes = lanes_inside(tile, x, y);
-                seed_block(job, scene_.settings().seed);
                 whole = render_block(job, last, samples, passes, counters);
             }
         }
@@ -178,16 +182,17 @@ private:
     bool render_block(BlockJob& job, int last, BlockSamples& samples, PassSamples& passes,
                       Counters& counters) {
         const int lane = std::countr_zero(job.lanes);  // all have equally many samples
+        const BlockSeeds seeds = block_seeds(job, scene_.settings().seed);
         for (int n = static_cast<int>(film_.samples(lane_x(job, lane), lane_y(job, lane)));
              n < last; ++n) {
-            job.index = static_cast<std::uint32_t>(settings_.first_sample + n);
+            choose_sample(job, seeds, static_cast<std::uint32_t>(settings_.first_sample + n));
             if (job.passes && times_)
                 timed(job, samples, passes, counters);
             else
                 kernel_(job, samples, counters);
             for (int i = 0; i < kLanes; ++i) {
                 if ((job.lanes >> i) & 1u)
-                    film_.add(lane_x(job, i), lane_y(job, i), job.index, samples[i],
+                    film_.add(lane_x(job, i), lane_y(job, i), job.sample, samples[i],
                               job.passes ? &passes : nullptr, i);
             }
             if (interrupted()) return false;
@@ -223,6 +228,8 @@ private:
 
     RenderResult finish(int done) {
         RenderResult r;
+        error_.look(film_, workers_, done, seconds_since(start_),
+                    process_cpu_seconds() - cpu_start_);
         r.complete = !stopped_;
         r.image.width = scene_.film().width;
         r.image.height = scene_.film().height;
@@ -244,6 +251,8 @@ private:
         s.checkpoint_s = checkpoints_.rested_s();
         s.checkpoint_every_s = settings_.checkpoint.empty() ? 0 : checkpoints_.every_s();
         s.render_s = seconds_since(start_);
+        s.error = error_.latest();
+        s.error_curve = error_.curve();
         s.rays = counters_.rays;
         s.samples = counters_.samples;
         s.invalid = counters_.invalid;
@@ -271,6 +280,7 @@ private:
     }
 
     Clock::time_point start_ = Clock::now();  // before the film, which takes a while to make
+    double cpu_start_ = process_cpu_seconds();
     const Scene& scene_;
     const RenderSettings& settings_;
     PixelWindow window_;
@@ -288,6 +298,7 @@ private:
     Counters counters_;
     double last_report_ = -1;
     Checkpoints checkpoints_;
+    ErrorWatch error_;
 };
 
 }  // namespace

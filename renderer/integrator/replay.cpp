@@ -1,11 +1,10 @@
 #include "renderer/integrator/replay.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <chrono>
 #include <mutex>
 
+#include "renderer/core/cpu_time.h"
 #include "renderer/core/parallel.h"
 #include "renderer/integrator/block.h"
 #include "renderer/integrator/ray_log.h"
@@ -17,12 +16,6 @@ namespace {
 constexpr int kTilesAtOnce = 64;
 
 }  // namespace
-
-double process_cpu_seconds() noexcept {
-    timespec t{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 ReplayTimes time_replay(const Scene& scene, const RenderSettings& settings) {
     const FilmDesc& film = scene.film();
@@ -49,9 +42,9 @@ ReplayTimes time_replay(const Scene& scene, const RenderSettings& settings) {
                 for (int x = tile.x0 & ~(kBlockSize - 1); x < tile.x1; x += kBlockSize) {
                     job.x = x, job.y = y;
                     job.lanes = lanes_inside(tile, x, y);
-                    seed_block(job, scene.settings().seed);
+                    const BlockSeeds seeds = block_seeds(job, scene.settings().seed);
                     for (int s = 0; s < scene.settings().spp; ++s) {
-                        job.index = static_cast<std::uint32_t>(s);
+                        choose_sample(job, seeds, static_cast<std::uint32_t>(s));
                         kernel(job, samples, counters);
                     }
                 }

@@ -12,9 +12,6 @@ struct ReplayTimes {
     std::uint64_t rays = 0;
 };
 
-/// CPU seconds that this process has used.
-double process_cpu_seconds() noexcept;
-
 /// Renders tile by tile with every ray taken down, and times asking Embree again for the same rays,
 /// in the same order, packets as packets. Tiles are recorded and replayed in turn so that memory
 /// stays small; only the replay is timed.

@@ -49,7 +49,7 @@ FilmHeader film_header(const Scene& scene, const PixelWindow& window,
     h.window = window;
     h.seed = scene.settings().seed;
     h.passes = scene.passes();
-    h.deep = settings.deep;
+    h.extras = {settings.deep, settings.error_estimate};
     h.first_sample = settings.first_sample;
     for (const Pass& p : h.passes) {
         h.ids.emplace_back();

@@ -42,7 +42,7 @@ FilmHeader header_of(const std::vector<std::string>& passes) {
 
 // Three samples of every pixel, of everything.
 Film film_of(const FilmHeader& h) {
-    Film film(h.window, h.passes, h.deep);
+    Film film(h.window, h.passes, h.extras);
     Random random(5);
     const auto any = [&] { return random.unit(); };
     PassSamples passes = film.pass_samples();
@@ -138,11 +138,11 @@ TEST_CASE("film file: every kind of pass comes back, bit for bit") {
 TEST_CASE("film file: depths come back, and only those that go with the samples") {
     const TempFolder folder;
     FilmHeader h = header_of({"Z", "CryptoObject"});
-    h.deep = true;
+    h.extras.deep = true;
     Film film = film_of(h);
     write_film_file(folder / "a.tsf", h, film);
     FilmFile read = read_film_file(folder / "a.tsf");
-    CHECK(read.header.deep);
+    CHECK(read.header.extras.deep);
     REQUIRE(states_of(film).deep);
     CHECK(states_of(film) == states_of(read.film));
     CHECK(states_of(film).deep->keys.size() > 50);
@@ -266,7 +266,7 @@ TEST_CASE("film file: a header tells what differs, and in which order") {
     CHECK(what([](FilmHeader& b) { b.version = "9", b.seed = 1; }) == "version of Tessera");
     CHECK(what([](FilmHeader& b) { b.width = 9, b.scene_hash = "c"; }) == "resolution");
     CHECK(what([](FilmHeader& b) { b.seed = 1, b.scene_hash = "c"; }) == "seed");
-    CHECK(what([](FilmHeader& b) { b.deep = true; }) == "set of depths (--deep)");
+    CHECK(what([](FilmHeader& b) { b.extras.deep = true; }) == "set of depths (--deep)");
     CHECK(what([](FilmHeader& b) { b.isa = "sse2"; }) == "instruction set (--isa)");
     CHECK(what([](FilmHeader& b) { b.working_space = "lin_rec709"; }) == "working space");
     CHECK(what([](FilmHeader& b) { b.passes[5].expression = "C<RD>O"; }) == "pass 6");

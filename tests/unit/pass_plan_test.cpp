@@ -86,10 +86,10 @@ TEST_CASE("pass plan: there is always one sample, and never more than asked for"
 TEST_CASE("pass plan: without a time passes grow fourfold up to the samples asked for") {
     const PassPlan plan(100, 0);
     CHECK(plan.next(0, 0) == 1);
-    CHECK(plan.next(1, 0) == 4);
-    CHECK(plan.next(5, 0) == 16);
-    CHECK(plan.next(7, 0) == 14);  // resumed
-    CHECK(plan.next(21, 0) == 64);
+    CHECK(plan.next(1, 0) == 3);
+    CHECK(plan.next(4, 0) == 12);
+    CHECK(plan.next(7, 0) == 9);  // resumed
+    CHECK(plan.next(16, 0) == 48);
     CHECK(plan.next(85, 0) == 15);
     CHECK(plan.next(100, 0) == 0);
     CHECK(PassPlan(1 << 24, 0).next((1 << 24) - 1, 0) == 1);

@@ -1,0 +1,37 @@
+#pragma once
+// How wrong a picture is, as it says of itself.
+
+#include <string>
+#include <vector>
+
+#include "renderer/api/scene_desc.h"
+
+namespace tessera {
+
+/// A number and between which it lies in 95 of 100 pictures, if it is reliable.
+struct Interval {
+    double value = 0, low = 0, high = 0;
+    bool reliable = false;
+};
+
+/// Of a layer, against what infinitely many samples would give; over pixels and channels.
+struct ErrorEstimate {
+    bool asked = false;                 // false: nobody wanted to know
+    bool known = false;                 // false: a pixel has fewer than four samples
+    Interval rmse;                      // root of the mean squared error, in the picture's units
+    Interval relmse;                    // mean of squared error / (value^2 + epsilon)
+    double epsilon = 0;                 // a hundredth of the squared mean of the picture
+    PixelWindow tile;                   // where the rmse is largest
+    Interval worst_tile;                // the rmse there
+    double largest_share = 0;           // of the squared error, in the one noisiest pixel
+    std::vector<std::string> cautions;  // why something is not reliable
+};
+
+/// The error as it was at the end of a pass over the picture.
+struct ErrorPoint {
+    int spp = 0;
+    double wall_s = 0, cpu_s = 0;  // of rendering until then
+    Interval rmse, relmse;
+};
+
+}  // namespace tessera

@@ -1,0 +1,38 @@
+#include "renderer/cli/say_error.h"
+
+#include <fmt/format.h>
+
+namespace tessera {
+namespace {
+
+std::string text_of(const char* name, const Interval& i) {
+    return fmt::format("{} {:.3g} ({:.3g} to {:.3g}{})", name, i.value, i.low, i.high,
+                       i.reliable ? "" : "; unreliable");
+}
+
+void add(LayeredImage& image, const std::string& name, const Interval& i) {
+    const std::string key = "tessera/error/" + name;
+    image.metadata.emplace_back(key, static_cast<float>(i.value));
+    image.metadata.emplace_back(key + "Low", static_cast<float>(i.low));
+    image.metadata.emplace_back(key + "High", static_cast<float>(i.high));
+    image.metadata.emplace_back(key + "Reliable", i.reliable ? 1 : 0);
+}
+
+}  // namespace
+
+std::string to_text(const ErrorEstimate& e) {
+    if (!e.known) return "unknown: fewer than 4 samples in some pixels";
+    std::string text = text_of("relMSE", e.relmse) + ", " + text_of("RMSE", e.rmse);
+    for (const std::string& c : e.cautions) text += "; " + c;
+    return text;
+}
+
+void add_error_metadata(LayeredImage& image, const ErrorEstimate& e) {
+    if (!e.known) return;
+    add(image, "relmse", e.relmse);
+    add(image, "rmse", e.rmse);
+    add(image, "worstTile", e.worst_tile);
+    image.metadata.emplace_back("tessera/error/epsilon", static_cast<float>(e.epsilon));
+}
+
+}  // namespace tessera

@@ -1,0 +1,17 @@
+#pragma once
+// A picture's error as people and headers read it.
+
+#include <string>
+
+#include "renderer/api/image.h"
+#include "renderer/api/picture_error.h"
+
+namespace tessera {
+
+/// "relMSE 0.0123 (0.0118 to 0.0129), RMSE 0.041 (0.039 to 0.043)"; what is not reliable says so.
+std::string to_text(const ErrorEstimate& error);
+
+/// Attributes tessera/error/... of a picture's header.
+void add_error_metadata(LayeredImage& image, const ErrorEstimate& error);
+
+}  // namespace tessera

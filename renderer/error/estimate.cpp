@@ -1,0 +1,88 @@
+#include "renderer/error/estimate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "renderer/core/parallel.h"
+#include "renderer/error/interval.h"
+#include "renderer/error/tile_error.h"
+
+namespace tessera {
+namespace {
+
+constexpr int kTile = 32;
+
+struct Tile {
+    PixelWindow frame, picture;  // the same pixels, counted from either's corner
+    double sum = 0;
+    TileError error;
+};
+
+std::vector<Tile> tiles_of(const PixelWindow& w) {
+    std::vector<Tile> out;
+    const auto start = [](int v) { return v - ((v % kTile) + kTile) % kTile; };
+    for (int y = start(w.y0); y < w.y1; y += kTile) {
+        for (int x = start(w.x0); x < w.x1; x += kTile) {
+            Tile t;
+            t.frame = {std::max(x, w.x0), std::max(y, w.y0), std::min(x + kTile, w.x1),
+                       std::min(y + kTile, w.y1)};
+            t.picture = {t.frame.x0 - w.x0, t.frame.y0 - w.y0, t.frame.x1 - w.x0,
+                         t.frame.y1 - w.y0};
+            out.push_back(t);
+        }
+    }
+    return out;
+}
+
+double pixels_of(const PixelWindow& w) { return static_cast<double>(w.width()) * w.height(); }
+
+// Of the tile where the error is largest, which may be another than it seems.
+void find_worst(const std::vector<Tile>& tiles, ErrorEstimate& out) {
+    const double quantile = joint_quantile(tiles.size());
+    bool any = false;
+    for (const Tile& t : tiles) {
+        const Interval i = root(mean_interval(t.error.absolute, pixels_of(t.frame), quantile));
+        if (!any || i.value > out.worst_tile.value) {
+            out.worst_tile.value = i.value;
+            out.tile = t.frame;
+            any = true;
+        }
+        out.worst_tile.low = std::max(out.worst_tile.low, i.low);
+        out.worst_tile.high = std::max(out.worst_tile.high, i.high);
+    }
+}
+
+}  // namespace
+
+ErrorEstimate estimate_error(const ReplicateView& picture, const PixelWindow& window,
+                             Workers& workers) {
+    std::vector<Tile> tiles = tiles_of(window);
+    const int count = static_cast<int>(tiles.size());
+    workers.for_each(count, [&](int t) { tiles[t].sum = tile_sum(picture, tiles[t].picture); });
+    double sum = 0;
+    for (const Tile& t : tiles) sum += t.sum;
+    const double mean = sum / std::max(pixels_of(window), 1.0);
+    ErrorEstimate out;
+    out.asked = true;
+    out.epsilon = 0.01 * mean * mean;
+    const double epsilon = std::max(out.epsilon, 1e-30);  // of a black picture
+    workers.for_each(
+        count, [&](int t) { tiles[t].error = tile_error(picture, tiles[t].picture, epsilon); });
+    TileError all;
+    for (const Tile& t : tiles) {
+        all.absolute.add(t.error.absolute);
+        all.low.add(t.error.low);
+        all.high.add(t.error.high);
+        all.known &= t.error.known;
+    }
+    out.known = all.known && count > 0;
+    if (!out.known) return out;
+    out.rmse = root(mean_interval(all.absolute, pixels_of(window), kQuantile));
+    out.relmse = mean_interval(relative_error(all), pixels_of(window), kQuantile);
+    find_worst(tiles, out);
+    if (all.absolute.error > 0) out.largest_share = all.absolute.largest / all.absolute.error;
+    judge(all, out);
+    return out;
+}
+
+}  // namespace tessera
