@@ -27,11 +27,26 @@ struct ErrorEstimate {
     std::vector<std::string> cautions;  // why something is not reliable
 };
 
+/// What a picture's error is to come down to: the upper end of its interval, reliably.
+struct ErrorTarget {
+    bool relative = true;  // relMSE, else RMSE
+    double value = 0;
+};
+
+/// What is forecast where nothing is asked for.
+inline constexpr ErrorTarget kUsualTarget{true, 0.01};
+
+/// When a target will be reached, by the error so far. Nothing is known while value is 0.
+struct ErrorForecast {
+    Interval spp, wall_s;  // from the start
+};
+
 /// The error as it was at the end of a pass over the picture.
 struct ErrorPoint {
     int spp = 0;
     double wall_s = 0, cpu_s = 0;  // of rendering until then
     Interval rmse, relmse;
+    ErrorForecast forecast;  // of the target, where there is one
 };
 
 }  // namespace tessera

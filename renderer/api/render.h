@@ -85,6 +85,8 @@ struct Statistics {
     bool complete = true;
     ErrorEstimate error;                  // of beauty
     std::vector<ErrorPoint> error_curve;  // of beauty
+    std::optional<ErrorTarget> error_target;
+    bool error_reached = false;
 };
 
 /// The statistics file (docs/stats.schema.json), as JSON text.
@@ -112,7 +114,8 @@ struct Progress {
     double fraction = 0;  // 0..1
     double elapsed_s = 0;
     double eta_s = 0;
-    int spp = 0;  // of the pass under way
+    int spp = 0;                      // of the pass under way
+    std::optional<ErrorPoint> error;  // the latest
 };
 
 struct RenderResult {
@@ -127,7 +130,10 @@ struct RenderSettings {
     int tile = 32;      // pixels, a multiple of 4
     double time_s = 0;  // > 0: passes until so many seconds are used; spp is then the upper bound
     bool deep = false;  // also beauty apart by depth
+    std::optional<ErrorTarget>
+        target;                  // end when it is reached, if spp and time_s are not used up before
     bool error_estimate = true;  // say how wrong the picture is; the samples do not depend on it
+    std::function<void(const ErrorPoint&)> on_error;  // called between passes
     const std::atomic<bool>* cancel = nullptr;
     std::function<void(const Progress&)> progress;  // called from one thread at a time
     /// A tile of a pass is finished: its pixels so far, to be copied. Called by several at a time.

@@ -10,6 +10,8 @@
 #include "renderer/cli/commands.h"
 #include "renderer/cli/console.h"
 #include "renderer/cli/describe_picture.h"
+#include "renderer/cli/error_options.h"
+#include "renderer/cli/forecast_printer.h"
 #include "renderer/cli/frame_window.h"
 #include "renderer/cli/long_render.h"
 #include "renderer/cli/output_check.h"
@@ -31,6 +33,8 @@
 namespace tessera {
 namespace {
 
+constexpr int kMostForTarget = 1 << 20;  // samples of a pixel
+
 struct RenderOptions {
     SceneOptions scene;
     LongRenderOptions runs;
@@ -38,7 +42,8 @@ struct RenderOptions {
     std::string output, preview, view, stats, display, deep;
     std::string progress = "auto", crypto_manifest = "embedded";
     double time_s = 0;
-    bool no_progress = false, quiet = false, no_error = false;
+    ErrorOptions error;
+    bool no_progress = false, quiet = false;
     int verbose = 0;
 };
 
@@ -84,9 +89,9 @@ void say_what_the_film_takes(const Scene& scene, const RenderOptions& o) {
     const FilmDesc& film = scene.film();
     const PixelWindow window = film.crop ? *film.crop : PixelWindow{0, 0, film.width, film.height};
     const std::uint64_t bytes =
-        Film::expected_bytes(window, scene.passes(), {!o.deep.empty(), !o.no_error});
+        Film::expected_bytes(window, scene.passes(), {!o.deep.empty(), !o.error.none});
     log_info(fmt::format("film     {}x{}, beauty{}{} and {} passes, {:.1f} MiB{}", window.width(),
-                         window.height(), o.no_error ? "" : " four times",
+                         window.height(), o.error.none ? "" : " four times",
                          o.deep.empty() ? "" : ", depths", scene.passes().size(),
                          static_cast<double>(bytes) / (1 << 20),
                          o.runs.checkpoint.empty() ? "" : " and as much for checkpoints"));
@@ -103,6 +108,8 @@ void say_what_was_rendered(const Statistics& s) {
                          before, s.render_s, per_second(s.samples), per_second(s.rays.total()),
                          s.threads));
     if (s.error.asked) log_info("error    " + to_text(s.error));
+    if (s.error_target && !s.error_reached)
+        log_warning("the error that --error asks for was not reached: " + why_not_reached(s));
     if (s.checkpoints + s.checkpoints_failed > 0)
         log_verbose(fmt::format(
             "{} checkpoints, {} failed, one every {:.3g} s; the render rested {:.3g} s for them",
@@ -171,7 +178,11 @@ RenderResult render_with_progress(const Scene& scene, const RenderOptions& o, do
     settings.tile = o.scene.tile;
     settings.time_s = time_s;
     settings.deep = !o.deep.empty();
-    settings.error_estimate = !o.no_error;
+    settings.error_estimate = !o.error.none;
+    settings.target = o.error.target();
+    ForecastPrinter forecasts(printer,
+                              settings.target || o.time_s <= 0 ? settings.target : kUsualTarget);
+    settings.on_error = [&](const ErrorPoint& p) { forecasts.show(p); };
     settings.cancel = &stop_at_next_tile();
     settings.progress = [&](const Progress& p) { printer.show(p); };
     settings.snapshot = &snapshot_wanted();
@@ -239,6 +250,8 @@ int run_render(RenderOptions options, const std::string& command) {
         throw Error(ExitCode::usage,
                     "--progress tractor: standard output is that of --stats -; give it a file");
     check_outputs(outputs_of(options));
+    if (options.error.target() && !options.scene.spp && options.runs.samples.empty())
+        options.scene.spp = kMostForTarget;
     options.runs.apply(options.scene.spp, options.output);
 
     double load_s = 0;
@@ -317,6 +330,7 @@ void add_render(Command app, CommandLine& line) {
     sub.option("--stats", o->stats, "Statistics as JSON; - for standard output");
     sub.option("--time", o->time_s, "Seconds to render; passes until they are used, --spp at most")
         .check(positive_seconds);
+    o->error.add_to(sub);
     o->runs.add_to(sub);
     sub.option("--display", o->display,
                "HOST:PORT of a tev viewer that shows the picture as it grows");
@@ -331,8 +345,6 @@ void add_render(Command app, CommandLine& line) {
         .one_of({"embedded", "sidecar"});
     sub.option("--progress", o->progress, "auto, bar, line, json, tractor or none")
         .one_of(progress_styles());
-    sub.flag("--no-error-estimate", o->no_error,
-             "Do not say how wrong the picture is: 160 bytes a pixel less; the same picture");
     sub.flag("--no-progress", o->no_progress, "As --progress none");
     sub.flag("-v,--verbose", o->verbose, "Say more");
     sub.flag("-q,--quiet", o->quiet, "Say nothing but errors");

@@ -27,6 +27,18 @@ std::string to_text(const ErrorEstimate& e) {
     return text;
 }
 
+std::string to_text(const ErrorTarget& t) {
+    return fmt::format("{} {:.3g}", t.relative ? "relMSE" : "RMSE", t.value);
+}
+
+std::string why_not_reached(const Statistics& s) {
+    const Interval& i = s.error_target->relative ? s.error.relmse : s.error.rmse;
+    if (!s.complete) return "the render was stopped";
+    if (s.error.known && !i.reliable && i.high <= s.error_target->value)
+        return "its estimate is not reliable";
+    return fmt::format("{} samples a pixel or the time were used up", s.spp);
+}
+
 void add_error_metadata(LayeredImage& image, const ErrorEstimate& e) {
     if (!e.known) return;
     add(image, "relmse", e.relmse);

@@ -4,12 +4,18 @@
 #include <string>
 
 #include "renderer/api/image.h"
-#include "renderer/api/picture_error.h"
+#include "renderer/api/render.h"
 
 namespace tessera {
 
 /// "relMSE 0.0123 (0.0118 to 0.0129), RMSE 0.041 (0.039 to 0.043)"; what is not reliable says so.
 std::string to_text(const ErrorEstimate& error);
+
+/// Of a target that was not.
+std::string why_not_reached(const Statistics& stats);
+
+/// "relMSE 0.01"
+std::string to_text(const ErrorTarget& target);
 
 /// Attributes tessera/error/... of a picture's header.
 void add_error_metadata(LayeredImage& image, const ErrorEstimate& error);

@@ -41,7 +41,10 @@ ordered_json error_json(const ErrorEstimate& e, const std::vector<ErrorPoint>& c
                           {"wall", p.wall_s},
                           {"cpu", p.cpu_s},
                           {"rmse", interval_json(p.rmse)},
-                          {"relmse", interval_json(p.relmse)}});
+                          {"relmse", interval_json(p.relmse)},
+                          {"forecast",
+                           {{"spp", interval_json(p.forecast.spp)},
+                            {"wall", interval_json(p.forecast.wall_s)}}}});
     return {{"rmse", interval_json(e.rmse)},
             {"relmse", interval_json(e.relmse)},
             {"epsilon", e.epsilon},
@@ -49,6 +52,13 @@ ordered_json error_json(const ErrorEstimate& e, const std::vector<ErrorPoint>& c
             {"largest_share", e.largest_share},
             {"cautions", e.cautions},
             {"curve", points}};
+}
+
+ordered_json target_json(const Statistics& s) {
+    if (!s.error_target) return nullptr;
+    return {{"metric", s.error_target->relative ? "relmse" : "rmse"},
+            {"value", s.error_target->value},
+            {"reached", s.error_reached}};
 }
 
 }  // namespace
@@ -130,7 +140,7 @@ std::string to_json(const Statistics& s) {
           {"in_cache", s.textures_cached},
           {"cache_read_bytes", s.texture_bytes_read},
           {"failed_lookups", s.texture_failures}}},
-        {"error", {{"beauty", error_json(s.error, s.error_curve)}}},
+        {"error", {{"beauty", error_json(s.error, s.error_curve)}, {"target", target_json(s)}}},
         {"invalid", invalid},
         {"half", {{"clamped", s.half_clamped}, {"non_finite", s.half_non_finite}}},
         {"left_out", left_out},

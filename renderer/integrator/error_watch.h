@@ -1,6 +1,7 @@
 #pragma once
 // How wrong the picture is while it is rendered.
 
+#include <optional>
 #include <vector>
 
 #include "renderer/api/picture_error.h"
@@ -12,14 +13,23 @@ class Workers;
 
 class ErrorWatch {
 public:
+    explicit ErrorWatch(std::optional<ErrorTarget> target) : target_(target) {}
+
     /// Between passes: all pixels have spp samples after so many seconds. A film without replicates
     /// says nothing.
-    void look(const Film& film, Workers& workers, int spp, double wall_s, double cpu_s);
+    /// Whether anything new came of it.
+    bool look(const Film& film, Workers& workers, int spp, double wall_s, double cpu_s);
+
+    /// Whether the target, if there is one, is reached.
+    bool reached() const;
+    /// Samples at which it will be, rounded up to whole replicates; 0: nobody knows.
+    int samples_wanted() const;
 
     const ErrorEstimate& latest() const noexcept { return latest_; }
     const std::vector<ErrorPoint>& curve() const noexcept { return curve_; }
 
 private:
+    std::optional<ErrorTarget> target_;
     ErrorEstimate latest_;
     std::vector<ErrorPoint> curve_;
 };

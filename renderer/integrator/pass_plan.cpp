@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "renderer/core/sampler.h"
+
 namespace tessera {
 namespace {
 
@@ -9,17 +11,29 @@ constexpr double kShare = 0.5;     // of the time left, for one pass
 constexpr double kSlower = 1.25;   // than those before a sample may be
 constexpr double kEnough = 0.005;  // so little of the time may be left over
 constexpr double kMemory = 0.25;   // weight of a pass against the next one
-constexpr int kGrowth = 4;
+constexpr int kGrowth = 4, kCloseGrowth = 2;
+constexpr int kCareful = 16;  // a pass takes this part of what is there at least
 
 }  // namespace
 
-int PassPlan::next(int done, double elapsed_s) const {
+int PassPlan::next(int done, double elapsed_s, int wanted) const {
     const int rest = spp_ - done;
     if (rest <= 0) return 0;
-    if (time_s_ > 0) return std::min(affordable(elapsed_s), rest);
     int end = 1;
-    while (end <= done) end *= kGrowth;
-    return std::min(end - done, rest);
+    while (end <= done) end *= wanted > 0 ? kCloseGrowth : kGrowth;
+    int count = end - done;
+    if (wanted > 0)
+        count = std::min(
+            count, std::max(wanted - done, kReplicates * (done / kCareful / kReplicates + 1)));
+    if (time_s_ > 0)
+        count = std::min(whole(done, affordable(elapsed_s)), wanted > 0 ? count : rest);
+    return std::min(count, rest);
+}
+
+// Equally many samples for all replicates, once there are more than that.
+int PassPlan::whole(int done, int count) {
+    const int over = (done + count) % kReplicates;
+    return count > over ? count - over : count;
 }
 
 int PassPlan::affordable(double elapsed_s) const {

@@ -16,12 +16,15 @@ public:
     PassPlan(int spp, double time_s) : spp_(spp), time_s_(time_s) {}
 
     /// Samples of the next pass when `done` are there after so many seconds; 0: that is all.
-    int next(int done, double elapsed_s) const;
+    /// wanted: where the error is thought to be small enough (0: that is no matter); looked at more
+    /// often then.
+    int next(int done, double elapsed_s, int wanted = 0) const;
     /// A pass is through.
     void took(int samples, double seconds);
 
 private:
     int affordable(double elapsed_s) const;
+    static int whole(int done, int count);
 
     int spp_;
     double time_s_;

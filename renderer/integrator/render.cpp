@@ -45,21 +45,22 @@ public:
           kernel_(find_kernel(scene.settings().integrator, scene.kernel())),
           tiles_(make_tiles(window_, settings.tile)),
           workers_(settings.threads),
-          checkpoints_(settings.checkpoint, settings.checkpoint_s, settings.warn) {}
+          checkpoints_(settings.checkpoint, settings.checkpoint_s, settings.warn),
+          error_(settings.target) {}
 
     RenderResult run() {
         const int spp = scene_.settings().spp;
         int done = static_cast<int>(sample_range(film_).least);
         resumed_ = done;
         PassPlan plan(spp, settings_.time_s);
-        while (const int count = plan.next(done, seconds_since(start_))) {
+        while (const int count = plan.next(done, seconds_since(start_), error_.samples_wanted())) {
             const Clock::time_point start = Clock::now();
             render_pass(done, done + count, spp);
             if (stopped_) break;
             done += count;
             plan.took(count, seconds_since(start));
-            error_.look(film_, workers_, done, seconds_since(start_),
-                        process_cpu_seconds() - cpu_start_);
+            look_at_error(done);
+            if (error_.reached()) break;
         }
         save();
         return finish(done);
@@ -220,16 +221,26 @@ private:
         p.fraction = samples / spp;
         if (settings_.time_s > 0)
             p.fraction = std::max(p.fraction, std::min(1.0, elapsed / settings_.time_s));
+        if (settings_.target && !error_.curve().empty()) {
+            p.error = error_.curve().back();
+            if (const double s = p.error->forecast.wall_s.value; s > 0)
+                p.fraction = std::max(p.fraction, std::min(elapsed / s, 0.99));
+        }
         p.elapsed_s = elapsed;
         p.eta_s = p.fraction > 0 ? elapsed * (1 - p.fraction) / p.fraction : 0;
         p.spp = pass_end;
         settings_.progress(p);
     }
 
+    void look_at_error(int done) {
+        const bool news = error_.look(film_, workers_, done, seconds_since(start_),
+                                      process_cpu_seconds() - cpu_start_);
+        if (news && settings_.on_error) settings_.on_error(error_.curve().back());
+    }
+
     RenderResult finish(int done) {
         RenderResult r;
-        error_.look(film_, workers_, done, seconds_since(start_),
-                    process_cpu_seconds() - cpu_start_);
+        look_at_error(done);
         r.complete = !stopped_;
         r.image.width = scene_.film().width;
         r.image.height = scene_.film().height;
@@ -253,6 +264,8 @@ private:
         s.render_s = seconds_since(start_);
         s.error = error_.latest();
         s.error_curve = error_.curve();
+        s.error_target = settings_.target;
+        s.error_reached = error_.reached();
         s.rays = counters_.rays;
         s.samples = counters_.samples;
         s.invalid = counters_.invalid;
