@@ -6,6 +6,7 @@
 
 #include "renderer/cli/commands.h"
 #include "renderer/cli/console.h"
+#include "renderer/cli/coverage.h"
 #include "renderer/cli/scene_options.h"
 #include "renderer/core/cpu_time.h"
 #include "renderer/core/log.h"
@@ -21,6 +22,7 @@ double median(std::vector<double> v) {
 
 struct BenchOptions {
     SceneOptions scene;
+    CoverageOptions coverage;
     bool replay = false;
     int repeats = 5;
 };
@@ -83,8 +85,19 @@ void add_bench(Command app, CommandLine& line) {
     o->scene.add_to(sub);
     sub.flag("--replay", o->replay,
              "Also time Embree alone on the very same rays: the traversal ratio");
+    sub.option("--coverage", o->coverage.seeds,
+               "Instead: renders by so many seeds, and how often the intervals of their errors "
+               "hold the true ones")
+        .in(2, 1 << 20);
+    sub.option("--reference-spp", o->coverage.reference_spp,
+               "Samples per pixel of what --coverage takes for the truth")
+        .in(4, 1 << 24);
     sub.option("--repeats", o->repeats, "Timed runs").in(1, 1000);
-    sub.when_chosen([o, &line] { line.run = [o] { return run_bench(*o); }; });
+    sub.when_chosen([o, &line] {
+        line.run = [o] {
+            return o->coverage.seeds > 0 ? run_coverage(o->scene, o->coverage) : run_bench(*o);
+        };
+    });
 }
 
 }  // namespace tessera
