@@ -10,12 +10,20 @@ namespace {
 constexpr double kPixelsBehind = 4, kDeviation = 0.35, kLargest = 0.25, kBracket = 2.0;
 // How far off the relative error came out, in logarithms, over that of the ratio of its two
 // estimates (docs/error.md).
-constexpr double kBias = 0.1;
+constexpr double kBias = 0.2;
+constexpr double kTowardLow = 0.25;  // share of the way from the higher to the lower, in logarithms
 constexpr double kUnknown = 1000;  // no interval is wider than by this factor: it would say no more
 
 void widen(Interval& i, double factor) {
     i.low = std::max(i.low / factor, i.value / kUnknown);
     i.high = std::min(i.high * factor, i.value * kUnknown);
+}
+
+// A normal quantile for so many degrees of freedom (Cornish and Fisher, "Moments and Cumulants in
+// the Specification of Distributions", Revue de l'Institut International de Statistique 5, 1938).
+double student(double z, double degrees) noexcept {
+    const double n = std::max(degrees, 1.0), z3 = z * z * z;
+    return z + (z3 + z) / (4 * n) + (5 * z3 * z * z + 16 * z3 + 3 * z) / (96 * n * n);
 }
 
 // Of a picture without noise nothing is in doubt.
@@ -28,8 +36,8 @@ bool stands_on_few(const ErrorSums& s) {
 
 Interval mean_interval(const ErrorSums& sums, double pixels, double quantile) noexcept {
     if (!(sums.error > 0)) return {};
-    const double factor =
-        std::min(std::exp(quantile * std::sqrt(sums.spread) / sums.error), kUnknown);
+    const double t = student(quantile, sums.pixels_behind());
+    const double factor = std::min(std::exp(t * std::sqrt(sums.spread) / sums.error), kUnknown);
     const double mean = sums.error / pixels;
     return {mean, mean / factor, mean * factor, false};
 }
@@ -52,7 +60,7 @@ ErrorSums relative_error(const TileError& e) noexcept {
     ErrorSums out = e.high;
     if (!(e.high.error > 0)) return out;
     const double q = std::min(e.low.error / e.high.error, 1.0);
-    out.error *= std::pow(q, 0.5 * (1 - std::pow(q, 6)));
+    out.error *= std::pow(q, kTowardLow);
     return out;
 }
 

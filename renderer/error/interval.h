@@ -17,9 +17,8 @@ Interval root(const Interval& i) noexcept;
 /// Confidence Regions", JASA 62, 1967).
 double joint_quantile(std::size_t n) noexcept;
 
-/// Between the two estimates: near the higher one where they differ little, for its fault falls
-/// with the square of the noise and the lower one's with the noise; in the middle, of logarithms,
-/// where they differ much. Measured, not derived (docs/error.md).
+/// Between the two estimates, nearer to the higher one, whose fault falls faster with the samples.
+/// How near is measured, not derived (docs/error.md).
 ErrorSums relative_error(const TileError& error) noexcept;
 
 /// Says what of the estimate is reliable, and why not; widens what is known less well than its

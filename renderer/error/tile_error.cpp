@@ -104,18 +104,20 @@ struct Sixteen {
 // is a third of the channels' sum.
 constexpr double kSpread = 2.0 / (kReplicates * (kReplicates - 1)) / 12.0 / (kChannels * kChannels);
 
-// Where one replicate alone saw something rare the products vanish.
-constexpr double kFloor = 0.005;
+// Where one replicate alone saw something rare the products vanish: at least so much of the squared
+// error is added, of relative ones, whose weights are known less well, about what normal noise has
+// (docs/error.md).
+constexpr double kFloor = 0.005, kRelativeFloor = 0.4;
 
 // more: sds of what else is unknown, which come on top.
-void add(ErrorSums& sums, const Lane& error, const Lane (&off)[3], const Lane& more) {
+void add(ErrorSums& sums, const Lane& error, const Lane (&off)[3], const Lane& more, double floor) {
     for (int i = 0; i < kLanes; ++i) {
         double spread = 0;
         for (const Lane& o : off)
             spread += static_cast<double>(o.of[i]) * static_cast<double>(o.of[i]);
         const double m = static_cast<double>(more.of[i]) / kChannels;
         const double e = static_cast<double>(error.of[i]) / kChannels;
-        spread = spread * kSpread + m * m + kFloor * e * e;
+        spread = spread * kSpread + m * m + floor * e * e;
         sums.error += e;
         sums.spread += spread;
         sums.spread2 += spread * spread;
@@ -147,9 +149,9 @@ TileError tile_error(const ReplicateView& v, const PixelWindow& part, double eps
             Sixteen s;
             for (int c = 0; c < kChannels; ++c)
                 s.add_channel(pixels, c, static_cast<float>(epsilon));
-            add(out.absolute, s.absolute, s.absolute_off, {});
-            add(out.low, s.low, s.relative_off, s.half_bracket());
-            add(out.high, s.high, s.relative_off, s.half_bracket());
+            add(out.absolute, s.absolute, s.absolute_off, {}, kFloor);
+            add(out.low, s.low, s.relative_off, s.half_bracket(), kRelativeFloor);
+            add(out.high, s.high, s.relative_off, s.half_bracket(), kRelativeFloor);
         }
     }
     return out;
