@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "renderer/core/parallel.h"
 
@@ -26,6 +27,7 @@ How how(PassSource s) {
         case PassSource::crypto_asset:
             return How::coverage;
         case PassSource::sample_count:
+        case PassSource::standard_error:
             return How::counts;
         default:
             return How::sums;
@@ -154,6 +156,7 @@ void Film::add_passes(std::size_t i, std::uint32_t index, const PathSample& s,
         switch (plane.source) {
             case PassSource::z:
             case PassSource::sample_count:
+            case PassSource::standard_error:
                 break;
             case PassSource::depth:
                 if (f.hit) sums->add(static_cast<double>(f.z));
@@ -342,6 +345,9 @@ void Film::put_pixel(const Pass& pass, const Plane& plane, std::size_t i, float*
         case PassSource::sample_count:
             *out = static_cast<float>(samples);
             return;
+        case PassSource::standard_error:
+            put_standard_error(i, channels, out);
+            return;
         case PassSource::seconds:
             *out = static_cast<float>(sums->value());
             return;
@@ -374,6 +380,23 @@ void Film::put_pixel(const Pass& pass, const Plane& plane, std::size_t i, float*
         out[c] = static_cast<float>(sums[c].value() * w);
         // A colour of at most 1; single samples of it may be more.
         if (albedo) out[c] = std::min(out[c], 1.0f);
+    }
+}
+
+// 0 while a replicate has no samples.
+void Film::put_standard_error(std::size_t i, std::size_t channels, float* out) const {
+    const PixelCounts& n = counts_[i];
+    const double total = n.total();
+    std::fill_n(out, channels, 0.0f);
+    if (!replicates_ || std::count(std::begin(n.samples), std::end(n.samples), 0u) > 0) return;
+    for (std::size_t c = 0; c < channels; ++c) {
+        const double mean = beauty(i, static_cast<int>(c)).value() / total;
+        double sum = 0;
+        for (std::uint32_t r = 0; r < kReplicates; ++r) {
+            const double off = beauty_[of_pixel(i, r) + c].value() / n.samples[r] - mean;
+            sum += n.samples[r] / total * off * off;
+        }
+        out[c] = static_cast<float>(std::sqrt(sum / (kReplicates - 1)));
     }
 }
 

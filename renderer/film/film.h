@@ -137,6 +137,7 @@ private:
                     const PassSamples& passes, int lane) noexcept;
     std::vector<Layer> outline() const;
     void put_row(const PixelWindow& part, int y, std::vector<Layer>& layers) const;
+    void put_standard_error(std::size_t i, std::size_t channels, float* out) const;
     void put_pixel(const Pass& pass, const Plane& plane, std::size_t i, float* out) const;
 
     PixelWindow window_;

@@ -61,6 +61,8 @@ const char* name_of(PassSource source) {
             return "seconds";
         case PassSource::variance:
             return "variance";
+        case PassSource::standard_error:
+            return "standard_error";
     }
     return "";
 }
@@ -207,7 +209,9 @@ FilmHeader film_header_from(const std::string& text) {
         h.passes.push_back(pass_from(p));
         h.ids.push_back(p.at("ids").get<std::vector<std::uint32_t>>());
         const Pass& pass = h.passes.back();
-        const std::size_t most = pass.source == PassSource::variance ? 3 : 4;
+        const bool of_beauty =
+            pass.source == PassSource::variance || pass.source == PassSource::standard_error;
+        const std::size_t most = of_beauty ? 3 : 4;
         if (pass.channels.empty() || pass.channels.size() > most || h.passes.size() > kMaxPasses)
             throw std::runtime_error("passes that no scene has");
     }

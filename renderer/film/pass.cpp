@@ -110,6 +110,9 @@ constexpr PassInfo kReady[] = {
     data("seconds", "A", S::seconds, "time spent on the pixel; not the same from run to run"),
     data("variance", "RGB", S::variance,
          "of beauty's mean, as if its samples were independent: as a rule too much"),
+    data("standard_error", "RGB", S::standard_error,
+         "of beauty, from four independent replicates of it: right on the mean, rough in each "
+         "pixel"),
 };
 
 constexpr PassPreset kPresets[] = {
@@ -127,7 +130,8 @@ constexpr PassPreset kPresets[] = {
      "surfaces: lobes, their albedos, and geometry"},
     {"cryptomatte", "CryptoObject CryptoMaterial CryptoAsset", "mattes of everything by name"},
     {"denoise", "albedo N Z variance", "what denoisers take beside beauty"},
-    {"debug", "Z P N Ng uv facing object_id material_id sample_count seconds variance",
+    {"debug",
+     "Z P N Ng uv facing object_id material_id sample_count seconds variance standard_error",
      "what to look at when something is wrong"},
 };
 

@@ -36,6 +36,7 @@ enum class PassSource : std::uint8_t {
     sample_count,
     seconds,
     variance,
+    standard_error,
 };
 
 struct Pass {

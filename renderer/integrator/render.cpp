@@ -36,7 +36,7 @@ public:
           settings_(settings),
           window_(window_of(scene.film())),
           film_(settings.resume.empty()
-                    ? Film(window_, scene.passes(), {settings.deep, settings.error_estimate})
+                    ? Film(window_, scene.passes(), film_extras(scene, settings))
                     : resumed_film(scene, window_, settings, resumed_s_)),
           header_(film_header(scene, window_, settings)),
           times_(std::any_of(scene.passes().begin(), scene.passes().end(),

@@ -35,6 +35,14 @@ bool even_blocks(const Film& film) {
 
 }  // namespace
 
+FilmExtras film_extras(const Scene& scene, const RenderSettings& settings) {
+    const Passes& passes = scene.passes();
+    const bool wanted = std::any_of(passes.begin(), passes.end(), [](const Pass& p) {
+        return p.source == PassSource::standard_error;
+    });
+    return {settings.deep, settings.error_estimate || wanted};
+}
+
 FilmHeader film_header(const Scene& scene, const PixelWindow& window,
                        const RenderSettings& settings) {
     const Statistics& s = scene.statistics();
@@ -49,7 +57,7 @@ FilmHeader film_header(const Scene& scene, const PixelWindow& window,
     h.window = window;
     h.seed = scene.settings().seed;
     h.passes = scene.passes();
-    h.extras = {settings.deep, settings.error_estimate};
+    h.extras = film_extras(scene, settings);
     h.first_sample = settings.first_sample;
     for (const Pass& p : h.passes) {
         h.ids.emplace_back();

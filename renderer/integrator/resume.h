@@ -7,6 +7,9 @@
 
 namespace tessera {
 
+/// What the film keeps beside its passes.
+FilmExtras film_extras(const Scene& scene, const RenderSettings& settings);
+
 /// Without samples and seconds.
 FilmHeader film_header(const Scene& scene, const PixelWindow& window,
                        const RenderSettings& settings);

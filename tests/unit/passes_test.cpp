@@ -213,9 +213,9 @@ TEST_CASE("passes: data of the first surface") {
     add_sky(s, {1, 1, 1});
     look_at_point(s, {5, 0, 10}, {5, 0, 0});
     set_film(s, 4, 4, 16);
-    const Layers layers =
-        layers_of(s, {"Z", "depth", "P", "Pref", "N", "Ng", "facing", "ao", "sample_count",
-                      "variance", "albedo", "diffuse_albedo", "specular_albedo", "shadow_matte"});
+    const Layers layers = layers_of(
+        s, {"Z", "depth", "P", "Pref", "N", "Ng", "facing", "ao", "sample_count", "variance",
+            "standard_error", "albedo", "diffuse_albedo", "specular_albedo", "shadow_matte"});
     CHECK(layers.at("Z")[0] == doctest::Approx(8));
     CHECK(layers.at("depth")[0] == doctest::Approx(8));
     CHECK(layers.at("P")[0] == doctest::Approx(5));
@@ -231,7 +231,29 @@ TEST_CASE("passes: data of the first surface") {
     CHECK(layers.at("specular_albedo")[0] == 0);
     // Lambert under a constant sky: every sample is 0.5.
     CHECK(layers.at("variance")[0] < 1e-9);
+    CHECK(layers.at("standard_error")[0] < 1e-7);
     CHECK(layers.at("shadow_matte")[0] == 0);
+}
+
+TEST_CASE("passes: squares of standard errors add up to the squared error that the picture tells") {
+    SceneDesc s;
+    SphereDesc ball;
+    ball.radius = 1;
+    ball.material = add(s, matte(0.5f));
+    s.spheres.push_back(ball);
+    place(s, ShapeKind::sphere, 0, {Matrix34{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}});
+    add_sky(s, {1, 2, 3});
+    look_at_point(s, {0, 0, 4}, {0, 0, 0});
+    s.camera.ortho_height = 3;
+    set_film(s, 24, 20, 12);
+    s.film.aovs = {"standard_error"};
+    const RenderResult r = render(*build_scene(std::move(s)));
+    double sum = 0;
+    for (const float e : r.image.layers.at(1).pixels)
+        sum += static_cast<double>(e) * static_cast<double>(e);
+    const double rmse = std::sqrt(sum / (24 * 20 * 3));
+    CHECK(rmse > 1e-3);
+    CHECK(r.stats.error.rmse.value == doctest::Approx(rmse).epsilon(1e-4));
 }
 
 TEST_CASE("passes: under an even sky glass shows its albedos, of reflection and of what passes") {
