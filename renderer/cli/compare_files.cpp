@@ -31,7 +31,7 @@ bool is_id_layer(const std::string& name) {
 }
 
 bool is_beauty(const std::string& channel) {
-    return channel == "R" || channel == "G" || channel == "B" || channel == "A";
+    return channel == "R" || channel == "G" || channel == "B" || channel == "A" || channel == "Y";
 }
 
 // Channels of one name in one layer, whatever their type; those of the root that are no beauty each
@@ -133,6 +133,15 @@ const Layer* ComparedPicture::find(const std::string& name) const {
     return nullptr;
 }
 
+const Layer* counterpart(const Layer& layer, const ComparedPicture& picture,
+                         const ComparedPicture& other) {
+    const std::string title = title_of(layer);
+    if (const Layer* const same = other.find(title)) return same;
+    if (title != "Z" && title != "depth") return nullptr;
+    const char* const alias = title == "Z" ? "depth" : "Z";
+    return picture.find(alias) ? nullptr : other.find(alias);
+}
+
 ComparedPicture read_compared(const std::string& path) {
     if (names_film_file(path))
         throw Error(ExitCode::scene,
@@ -145,8 +154,7 @@ ComparedPicture read_compared(const std::string& path) {
 
 std::string title_of(const Layer& layer) {
     if (!layer.name.empty()) return layer.name;
-    const bool picture = is_beauty(layer.channels[0]) || layer.channels[0] == "Y";
-    return picture || layer.channels.size() > 1 ? "beauty" : layer.channels[0];
+    return is_beauty(layer.channels[0]) || layer.channels.size() > 1 ? "beauty" : layer.channels[0];
 }
 
 LayerContent content_of(const Layer& layer) {

@@ -22,6 +22,11 @@ struct ComparedPicture {
 /// EXR with its layers, or PNG, JPEG, TIFF, HDR as one. Throws Error(scene) naming the file.
 ComparedPicture read_compared(const std::string& path);
 
+/// The layer of `other` that a picture's layer is compared with: of its name, or the pass that is
+/// root Z in one part and depth.Z among many. Null if there is none.
+const Layer* counterpart(const Layer& layer, const ComparedPicture& picture,
+                         const ComparedPicture& other);
+
 /// What people call a layer: "beauty", "Z", "N".
 std::string title_of(const Layer& layer);
 LayerContent content_of(const Layer& layer);

@@ -224,14 +224,14 @@ private:
 
     FileScores compare_file(const ComparedPicture& picture, bool first) {
         for (const std::string& name : request_.layers) {
-            for (const ComparedPicture* p : {&picture, &std::as_const(reference_)})
-                if (!p->find(name)) refuse(p->path + ": has no layer '" + name + "'" + listed(*p));
+            need(name, picture, reference_);
+            need(name, reference_, picture);
         }
         FileScores out;
         for (const Layer& r : reference_.image.layers) {
             const std::string title = title_of(r);
-            if (!wanted(title)) continue;
-            const Layer* const a = picture.find(title);
+            const Layer* const a = counterpart(r, reference_, picture);
+            if (!wanted(title) && !(a && wanted(title_of(*a)))) continue;
             if (!a) {
                 add_lone(title, reference_.path);
                 continue;
@@ -242,11 +242,18 @@ private:
             out.layers.push_back(compare(picture, *a, r, channels, first));
         }
         for (const Layer& a : picture.image.layers)
-            if (wanted(title_of(a)) && !reference_.find(title_of(a)))
+            if (wanted(title_of(a)) && !counterpart(a, picture, reference_))
                 add_lone(title_of(a), picture.path);
         if (out.titles.empty())
             refuse(picture.path + ": has no layer in common with " + reference_.path);
         return out;
+    }
+
+    static void need(const std::string& name, const ComparedPicture& picture,
+                     const ComparedPicture& other) {
+        const Layer* const elsewhere = other.find(name);
+        if (!picture.find(name) && !(elsewhere && counterpart(*elsewhere, other, picture)))
+            refuse(picture.path + ": has no layer '" + name + "'" + listed(picture));
     }
 
     static std::string listed(const ComparedPicture& picture) {

@@ -96,14 +96,23 @@ void feature_length(const Rows& light, const Kernel& derivative, const EyeFilter
     for (float& v : out.values) v = std::sqrt(v);
 }
 
+// Compilers give up on loops over so many arrays that could overlap, unless they are told that
+// none does.
+using In = const float* __restrict;
+using Out = float* __restrict;
+
+void to_lab(In achromatic, In red_green, In blue_yellow, std::size_t count, Out l, Out a, Out b) {
+    for (std::size_t i = 0; i < count; ++i) {
+        const Colour3 rgb = from_opponent(achromatic[i], red_green[i], blue_yellow[i]);
+        const Colour3 lab = to_hunt_lab(rgb[0], rgb[1], rgb[2]);
+        l[i] = lab[0], a[i] = lab[1], b[i] = lab[2];
+    }
+}
+
 void to_lab(Seen& seen) {
     for (Rows& rows : seen.lab) rows.resize(seen.filtered[0].width, seen.filtered[0].count);
-    for (std::size_t i = 0; i < seen.lab[0].values.size(); ++i) {
-        const Colour3 rgb = from_opponent(seen.filtered[0].values[i], seen.filtered[1].values[i],
-                                          seen.filtered[2].values[i]);
-        const Colour3 lab = to_hunt_lab(rgb[0], rgb[1], rgb[2]);
-        for (std::size_t c = 0; c < 3; ++c) seen.lab[c].values[i] = lab[c];
-    }
+    to_lab(seen.filtered[0].row(0), seen.filtered[1].row(0), seen.filtered[2].row(0),
+           seen.lab[0].values.size(), seen.lab[0].row(0), seen.lab[1].row(0), seen.lab[2].row(0));
 }
 
 // Sections 4.1 and 4.2: what remains at a distance, its colours, its edges and points.
