@@ -94,7 +94,7 @@ void write_heat_map(const CompareCommand& o, const ErrorMaps& maps) {
     log_info(fmt::format(
         "wrote    {}: {} of '{}'{}, {}", o.heatmap, flip ? "FLIP" : "relative error", maps.layer,
         sides.size() > 1 ? ", A and B" : "",
-        flip ? "black 0 to white 1" : "black at most 0.1 % to white at least 100 %, logarithmic"));
+        flip ? "black 0 to white 1" : "black at most 0.1 % to white at least 1000 %, logarithmic"));
 }
 
 int run_compare(const CompareCommand& o) {

@@ -97,7 +97,9 @@ private:
         const std::vector<ValueCounts> a = count_values(pair_.a), r = count_values(pair_.reference);
         for (std::size_t c = 0; c < a.size(); ++c)
             scores_.channels.push_back({pair_.channels[c], a[c], r[c], std::nullopt});
-        if (options_.maps) scores_.relative.assign(unequal.begin(), unequal.end());
+        if (!options_.maps) return;
+        for (const std::uint8_t differs : unequal)
+            scores_.relative.push_back(differs ? std::numeric_limits<float>::max() : 0.0f);
     }
 
     // What alpha counts for too.

@@ -44,7 +44,7 @@ struct LayerScores {
     std::uint64_t pixels = 0;
     std::optional<double> epsilon, psnr_peak;
     /// If maps were asked for, for each pixel: relative error and FLIP (of colours; NaN where a
-    /// value is not finite), of ids whether it differs.
+    /// value is not finite), of ids 0, or what no error exceeds.
     std::vector<float> relative, flip;
 };
 

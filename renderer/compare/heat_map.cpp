@@ -32,10 +32,11 @@ std::vector<std::uint8_t> heat_map(std::span<const float> values) {
 std::vector<float> on_log_scale(std::span<const float> relative_errors) {
     std::vector<float> out;
     out.reserve(relative_errors.size());
-    const auto least = static_cast<float>(kLeastShown);
     for (const float e : relative_errors) {
-        const float clamped = std::clamp(e, least, 1.0f);
-        out.push_back(std::isnan(e) ? e : 1 - std::log10(clamped) / std::log10(least));
+        const float clamped = std::clamp(e, kLeastShown, kMostShown);
+        out.push_back(std::isnan(e) ? e
+                                    : std::log10(clamped / kLeastShown) /
+                                          std::log10(kMostShown / kLeastShown));
     }
     return out;
 }

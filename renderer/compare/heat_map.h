@@ -16,8 +16,8 @@ std::array<float, 3> cubehelix(float t) noexcept;
 /// 8-bit RGB of each value, 0 to 1; values that are not finite are magenta, which the map has not.
 std::vector<std::uint8_t> heat_map(std::span<const float> values);
 
-/// Relative errors on a scale of kLeastShown (0) to 1 (1), logarithmic.
-inline constexpr double kLeastShown = 1e-3;
+/// Relative errors on a scale of kLeastShown (0) to kMostShown (1), logarithmic.
+inline constexpr float kLeastShown = 1e-3f, kMostShown = 10;
 std::vector<float> on_log_scale(std::span<const float> relative_errors);
 
 }  // namespace tessera
