@@ -198,8 +198,11 @@ private:
 
     // The rows with their halo; those beyond the picture repeat its first or last.
     void load(const PictureView& picture, int y0, int y1, std::size_t exposure, Seen& seen) const {
+        constexpr double kMost = 1e30;  // times 0 it is 0
         const float gain =
-            exposures_.empty() ? 1 : static_cast<float>(std::exp2(exposures_[exposure]));
+            exposures_.empty()
+                ? 1
+                : static_cast<float>(std::min(std::exp2(exposures_[exposure]), kMost));
         const auto show = [&](float v) {
             const float shown = exposures_.empty() ? v : tone_curve(std::max(v * gain, 0.0f));
             return std::min(std::max(shown, 0.0f), 1.0f);

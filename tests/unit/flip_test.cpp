@@ -184,6 +184,15 @@ TEST_CASE("hdr flip: exposure does not matter, and shadows count though highligh
     CHECK(mean(ldr(hot, r)) == 0);
 }
 
+TEST_CASE("hdr flip: light of any size gives numbers") {
+    TestPicture r = flat(12, 12, 0, 0, 0), a = r;
+    for (int c = 0; c < 3; ++c) r.at(5, 5, c) = 1e-44f, a.at(5, 5, c) = 3e38f;
+    for (const float v : hdr(a, r)) CHECK(std::isfinite(v));
+    for (const float v : hdr(r, a)) CHECK(std::isfinite(v));
+    const TestPicture dot = flat(1, 1, 0.1f, 0.2f, 0.3f);
+    CHECK(hdr(dot, dot) == std::vector<float>{0});
+}
+
 TEST_CASE("row filter: kernels have the sums of their paper") {
     double sum = 0, positive = 0, negative = 0;
     for (const float k : gaussian(2.7, 9)) sum += static_cast<double>(k);
