@@ -16,6 +16,7 @@ enum class ExitCode : int {
     scene = 3,
     output = 4,
     memory = 5,
+    differs = 10,
     checkpoint = 75,
 };
 

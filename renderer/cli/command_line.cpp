@@ -13,12 +13,12 @@ namespace tessera {
 namespace {
 
 Error unknown_command(const std::string& word) {
-    const std::vector<std::string> known{"render", "merge",    "flatten", "info",
-                                         "bench",  "exrcheck", "version"};
+    const std::vector<std::string> known{"render",  "merge", "flatten",  "info",
+                                         "compare", "bench", "exrcheck", "version"};
     return {ExitCode::usage,
             "tessera: unknown command '" + word + "'" + did_you_mean(word, known) +
-                "; there are render, merge, flatten, info, bench, exrcheck and version (tessera "
-                "--help)"};
+                "; there are render, merge, flatten, compare, info, bench, exrcheck and version "
+                "(tessera --help)"};
 }
 
 // An empty value is most often a script's empty variable: --checkpoint "$FILE" must not be no
@@ -71,6 +71,11 @@ Option& Option::one_of(const std::vector<std::string>& words) {
 
 Option& Option::check(std::function<std::string(const std::string&)> test) {
     option_->check(std::move(test));
+    return *this;
+}
+
+Option& Option::one_each() {
+    option_->allow_extra_args(false);
     return *this;
 }
 

@@ -26,6 +26,8 @@ public:
     Option& one_of(const std::vector<std::string>& words);
     /// test: what is wrong with a text, empty if nothing is.
     Option& check(std::function<std::string(const std::string&)> test);
+    /// Of a list: each time it is given it takes one value, not all that follow.
+    Option& one_each();
     Option& needs(const Option& other);
     Option& excludes(const Option& other);
 

@@ -32,4 +32,10 @@ void print_err(const std::string& text) {
     std::fflush(stderr);
 }
 
+std::string printable(std::string text) {
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) < 32 || c == 127) c = '?';
+    return text;
+}
+
 }  // namespace tessera

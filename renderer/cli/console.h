@@ -15,4 +15,7 @@ void print_out(const std::string& text);
 /// Writes to stderr; a failure is ignored, so that a lost terminal never stops a render.
 void print_err(const std::string& text);
 
+/// A terminal must not obey what a file calls its layers: control characters become '?'.
+std::string printable(std::string text);
+
 }  // namespace tessera

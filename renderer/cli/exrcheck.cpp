@@ -56,13 +56,6 @@ std::string as_json(const std::vector<CheckedFile>& files) {
     return dump(ordered_json{{"format", 1}, {"files", out}});
 }
 
-// A terminal must not obey what a file calls its channels.
-std::string printable(std::string text) {
-    for (char& c : text)
-        if (static_cast<unsigned char>(c) < 32 || c == 127) c = '?';
-    return text;
-}
-
 std::string as_text(const CheckedFile& file) {
     if (file.findings.empty()) return file.path + ": clean\n";
     std::string out;

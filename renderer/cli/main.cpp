@@ -81,7 +81,8 @@ int main(int argc, char** argv) {
         "  tessera render scene.toml -o out.exr --spp 256 --set camera.fov_deg=35\n"
         "  tessera info scene.toml\n"
         "Exit codes: 0 done, 1 a bug of ours, 2 usage, 3 scene or asset, 4 output, 5 memory,\n"
-        "  75 stopped with what there was written, 129/130/143 stopped with nothing saved");
+        "  10 compare: more than a limit allows, 75 stopped with what there was written, "
+        "129/130/143 stopped with nothing saved");
     const tessera::Command app = parser.root();
     tessera::CommandLine line;
     for (int i = 0; i < argc; ++i) line.text += (i ? " " : "") + std::string(argv[i]);
@@ -91,6 +92,7 @@ int main(int argc, char** argv) {
     tessera::add_bench(app, line);
     tessera::add_exrcheck(app, line);
     tessera::add_flatten(app, line);
+    tessera::add_compare(app, line);
     tessera::add_version(app, line);
     tessera::add_schema(app, line);
 

@@ -5,8 +5,9 @@
 #include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfInputFile.h>
+#include <ImfInputPart.h>
 #include <ImfIntAttribute.h>
+#include <ImfMultiPartInputFile.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <ImfTestFile.h>
@@ -36,29 +37,43 @@ bool is_beauty(const std::string& channel) {
     return channel.size() == 1 && kOrder.substr(0, 4).find(channel[0]) != std::string_view::npos;
 }
 
-/// Layers without pixels, the root ones first.
-std::vector<Layer> group(const Imf::ChannelList& channels, const std::string& path) {
-    std::vector<Layer> layers;
+/// A layer and how the file names its channels: with the layer's name before them, or bare.
+struct StoredLayer {
+    Layer layer;
+    bool bare = false;
+
+    std::string channel_name(std::size_t c) const {
+        return bare ? layer.channels[c] : layer.name + "." + layer.channels[c];
+    }
+};
+
+/// Layers without pixels, the root ones first. root: what bare channels are called.
+std::vector<StoredLayer> group(const Imf::ChannelList& channels, const std::string& root,
+                               const std::string& path) {
+    std::vector<StoredLayer> layers;
     for (auto it = channels.begin(); it != channels.end(); ++it) {
         const std::string full = it.name();
         if (it.channel().xSampling != 1 || it.channel().ySampling != 1)
             fail_image(path, "channel '" + full + "' is subsampled, expected full resolution");
         const std::size_t dot = full.rfind('.');
-        const std::string name = dot == std::string::npos ? "" : full.substr(0, dot);
-        const std::string channel = dot == std::string::npos ? full : full.substr(dot + 1);
+        const bool bare = dot == std::string::npos;
+        const std::string name = bare ? root : full.substr(0, dot);
+        const std::string channel = bare ? full : full.substr(dot + 1);
         const LayerKind kind = it.channel().type == Imf::HALF ? LayerKind::color : LayerKind::data;
-        const auto same = [&](const Layer& layer) {
-            return layer.name == name && layer.kind == kind &&
+        const auto same = [&](const StoredLayer& other) {
+            const Layer& layer = other.layer;
+            return layer.name == name && other.bare == bare && layer.kind == kind &&
                    (!name.empty() || is_beauty(layer.channels[0]) == is_beauty(channel));
         };
         auto layer = std::find_if(layers.begin(), layers.end(), same);
-        if (layer == layers.end()) layer = layers.insert(layer, Layer{name, {}, kind, {}});
-        layer->channels.push_back(channel);
+        if (layer == layers.end())
+            layer = layers.insert(layer, StoredLayer{{name, {}, kind, {}}, bare});
+        layer->layer.channels.push_back(channel);
     }
-    for (Layer& layer : layers)
-        std::stable_sort(layer.channels.begin(), layer.channels.end(), comes_before);
+    for (StoredLayer& stored : layers)
+        std::stable_sort(stored.layer.channels.begin(), stored.layer.channels.end(), comes_before);
     std::stable_partition(layers.begin(), layers.end(),
-                          [](const Layer& layer) { return layer.name.empty(); });
+                          [](const StoredLayer& stored) { return stored.layer.name.empty(); });
     return layers;
 }
 
@@ -111,16 +126,17 @@ void check_size(const Imf::Header& header, std::size_t channels, const ImageLimi
 }
 
 /// Reads strips and grows the layers with them: a file that lies about its size fails while small.
-void read_pixels(Imf::InputFile& in, LayeredImage& image) {
+void read_pixels(Imf::InputPart& in, std::vector<StoredLayer>& layers) {
     const Imath::Box2i box = in.header().dataWindow();
-    const auto width = static_cast<std::size_t>(image.window.width());
+    const auto width = static_cast<std::size_t>(box.max.x - box.min.x + 1);
     constexpr int kStrip = 128;
     for (int y = box.min.y; y <= box.max.y; y += kStrip) {
         const int last = std::min(y + kStrip - 1, box.max.y);
         const std::size_t done = static_cast<std::size_t>(y - box.min.y) * width;
         const std::size_t now = static_cast<std::size_t>(last - y + 1) * width;
         Imf::FrameBuffer frame;
-        for (Layer& layer : image.layers) {
+        for (StoredLayer& stored : layers) {
+            Layer& layer = stored.layer;
             const std::size_t count = layer.channels.size();
             layer.pixels.resize((done + now) * count);
             const std::int64_t origin =
@@ -130,9 +146,7 @@ void read_pixels(Imf::InputFile& in, LayeredImage& image) {
                 const auto base =
                     reinterpret_cast<std::uintptr_t>(layer.pixels.data() + done * count + c) -
                     static_cast<std::uintptr_t>(origin);
-                const std::string name =
-                    layer.name.empty() ? layer.channels[c] : layer.name + "." + layer.channels[c];
-                frame.insert(name,
+                frame.insert(stored.channel_name(c),
                              Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(base),
                                         count * sizeof(float), count * width * sizeof(float)));
             }
@@ -142,21 +156,40 @@ void read_pixels(Imf::InputFile& in, LayeredImage& image) {
     }
 }
 
-LayeredImage read_checked(const std::string& path, const ImageLimits& limits) {
-    if (Imf::isDeepOpenExrFile(path.c_str()) || Imf::isMultiPartOpenExrFile(path.c_str()))
-        fail_image(path, "it is deep or multi-part, expected one flat part");
-    Imf::InputFile in(path.c_str());
-    if (!in.isComplete()) fail_image(path, "the file is truncated");
-    LayeredImage image;
-    image.layers = group(in.header().channels(), path);
+/// The layers of each part, without pixels; all parts are checked.
+std::vector<std::vector<StoredLayer>> plan(Imf::MultiPartInputFile& in, const ImageLimits& limits,
+                                           const std::string& path) {
+    std::vector<std::vector<StoredLayer>> parts;
     std::size_t channels = 0;
-    for (const Layer& layer : image.layers) channels += layer.channels.size();
-    check_size(in.header(), channels, limits, path);
-    read_header(in.header(), image);
+    for (int p = 0; p < in.parts(); ++p) {
+        const Imf::Header& header = in.header(p);
+        if (!in.partComplete(p)) fail_image(path, "the file is truncated");
+        if (header.dataWindow() != in.header(0).dataWindow())
+            fail_image(path, "its parts have different data windows, expected one for all");
+        const std::string root = p > 0 && header.hasName() ? header.name() : "";
+        parts.push_back(group(header.channels(), root, path));
+        for (const StoredLayer& stored : parts.back()) channels += stored.layer.channels.size();
+    }
+    check_size(in.header(0), channels, limits, path);
+    return parts;
+}
+
+LayeredImage read_checked(const std::string& path, const ImageLimits& limits) {
+    if (Imf::isDeepOpenExrFile(path.c_str()))
+        fail_image(path, "it is deep, expected a flat picture (tessera flatten makes one)");
+    Imf::MultiPartInputFile in(path.c_str());
+    std::vector<std::vector<StoredLayer>> parts = plan(in, limits, path);
+    LayeredImage image;
+    read_header(in.header(0), image);
     const std::size_t pixels = static_cast<std::size_t>(image.window.width()) *
                                static_cast<std::size_t>(image.window.height());
-    for (Layer& layer : image.layers) layer.pixels.reserve(pixels * layer.channels.size());
-    read_pixels(in, image);
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+        for (StoredLayer& stored : parts[p])
+            stored.layer.pixels.reserve(pixels * stored.layer.channels.size());
+        Imf::InputPart part(in, static_cast<int>(p));
+        read_pixels(part, parts[p]);
+        for (StoredLayer& stored : parts[p]) image.layers.push_back(std::move(stored.layer));
+    }
     return image;
 }
 

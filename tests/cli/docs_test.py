@@ -53,8 +53,9 @@ class Docs(TesseraTest):
                     self.assertTrue((page.parent / link).exists())
 
     def test_render_options_are_all_documented(self):
-        text = (SOURCE / "docs" / "command-line.md").read_text()
-        for command in ("render", "info", "bench"):
+        pages = {"render": "command-line.md", "info": "command-line.md", "bench": "command-line.md", "compare": "compare.md"}
+        for command, page in pages.items():
+            text = (SOURCE / "docs" / page).read_text()
             shown = self.expect(0, command, "--help").out.split("Examples:")[0]
             for option in set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", shown)) - {"--help"}:
                 with self.subTest(command=command, option=option):

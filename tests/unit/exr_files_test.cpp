@@ -108,6 +108,27 @@ TEST_CASE("exr files: depth of both kinds fits into one multi-part file") {
     CHECK(names(file.parts[6]) == "depth.Z");
 }
 
+TEST_CASE("exr files: layers are read back from many parts as from one") {
+    const LayeredImage image = make_picture();
+    const TempFolder folder;
+    write_exr(image, folder / "one.exr", in(ExrLayout::single, ExrCompression::zip));
+    write_exr(image, folder / "many.exr", in(ExrLayout::multipart, ExrCompression::zip));
+    const LayeredImage one = read_exr(folder / "one.exr"), many = read_exr(folder / "many.exr");
+    CHECK(many.window == one.window);
+    CHECK(many.working_space == one.working_space);
+    REQUIRE(many.layers.size() == one.layers.size());
+    for (const Layer& layer : one.layers) {
+        const std::string name =
+            layer.name.empty() && layer.channels[0] == "Z" ? "depth" : layer.name;
+        const auto same = std::find_if(many.layers.begin(), many.layers.end(),
+                                       [&](const Layer& l) { return l.name == name; });
+        REQUIRE(same != many.layers.end());
+        CHECK(same->channels == layer.channels);
+        CHECK(same->kind == layer.kind);
+        CHECK(same->pixels == layer.pixels);
+    }
+}
+
 TEST_CASE("exr files: a multi-part file has a part per layer and no bare names but beauty's") {
     const TempFolder folder;
     const WriteReport report =
