@@ -192,10 +192,10 @@ NodeResult GraphRun::result(const Wire& wire) noexcept {
     if (wire.op < 0) return {wire.constant, 0.0f, {}};
     const auto at = static_cast<std::size_t>(wire.op);
     if (!done_[at]) {
-        results_[at] = run(graph_.ops()[at]);
+        results_.of[at] = run(graph_.ops()[at]);
         done_[at] = true;
     }
-    NodeResult r = results_[at];
+    NodeResult r = results_.of[at];
     if (wire.output > 0) r = {output_of(r, wire.output), 0.0f, {}};
     return r;
 }

@@ -94,9 +94,10 @@ private:
     const ShadeInput& in_;
     const TextureStore* store_;
     std::bitset<Graph::kMaxOps> done_;
-    union {
-        NodeResult results_[Graph::kMaxOps];  // made as they are asked for
-    };
+    union Results {
+        Results() noexcept {}
+        NodeResult of[Graph::kMaxOps];  // made as they are asked for
+    } results_;
 };
 
 /// A node of plain arithmetic, noise or pattern; inputs in the table's order, all there.

@@ -36,7 +36,7 @@ Color fringe_xyz(float opd) {
 // XYZ to linear Rec.709 with each row scaled so that equal energy is white: a film that does
 // nothing must not tint.
 Color to_rgb(Color c) {
-    constexpr Vec3f r(kXyzToRed), g(kXyzToGreen), b(kXyzToBlue), one(1.0f);
+    const Vec3f r(kXyzToRed), g(kXyzToGreen), b(kXyzToBlue), one(1.0f);
     return {dot(r, c) / dot(r, one), dot(g, c) / dot(g, one), dot(b, c) / dot(b, one)};
 }
 

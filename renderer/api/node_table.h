@@ -68,7 +68,7 @@ enum class NodeOp : std::uint8_t {
     combine3,
     extract,
     ifgreater,
-    switch_,
+    switch_,  // NOLINT(readability-identifier-naming): a keyword without its underscore
     rotate3d,
     place2d,
     rotate2d,

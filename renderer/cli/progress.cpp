@@ -39,8 +39,8 @@ std::string clock_text(double s) {
 }  // namespace
 
 const std::vector<std::string>& progress_styles() {
-    static const std::vector<std::string> kStyles{"auto", "bar", "line", "json", "tractor", "none"};
-    return kStyles;
+    static const std::vector<std::string> styles{"auto", "bar", "line", "json", "tractor", "none"};
+    return styles;
 }
 
 ProgressPrinter::ProgressPrinter(ProgressStyle style) : style_(style) {

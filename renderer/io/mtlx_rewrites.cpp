@@ -11,7 +11,7 @@ namespace {
 using At = MtlxGraph::NodeAt;
 using Result = std::optional<MtlxValue>;
 using Rewrite = MtlxRewrite;
-const NodeValue &kOne = Rewrite::kOne, &kZero = Rewrite::kZero;
+constexpr const NodeValue &kOne = Rewrite::kOne, &kZero = Rewrite::kZero;
 
 using Values = std::vector<NodeValue>;
 Result pass(Rewrite& r) { return r.in("in"); }

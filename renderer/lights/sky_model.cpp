@@ -15,6 +15,7 @@ constexpr int kSkyRings = 40, kGroundRings = 20, kRings = kSkyRings + kGroundRin
 const Vec3d kEye{0, kPlanetRadius_km + kEye_km, 0};
 
 double horizon() { return -std::acos(kPlanetRadius_km / kEye.y); }
+const auto kHorizon = static_cast<float>(horizon());
 
 double clamped(double x, double low, double high, double otherwise) {
     return std::isfinite(x) ? std::clamp(x, low, high) : otherwise;
@@ -128,7 +129,6 @@ SkyModel::SkyModel(const SkySettings& settings) {
 }
 
 SkyModel::Node SkyModel::look_up(float elevation, float azimuth) const {
-    static const auto kHorizon = static_cast<float>(horizon());
     const float above = elevation - kHorizon;
     const float ring =
         above >= 0.0f
