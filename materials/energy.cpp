@@ -57,8 +57,8 @@ public:
         for (int corner = 0; corner < (etas_ > 1 ? 8 : 4); ++corner) {
             const int dm = corner & 1, da = (corner >> 1) & 1, de = corner >> 2;
             const float w = (dm ? m.t : 1 - m.t) * (da ? a.t : 1 - a.t) * (de ? e.t : 1 - e.t);
-            sum += w * values_[static_cast<std::size_t>(((e.i + de) * alphas_ + a.i + da) * mus_ +
-                                                        m.i + dm)];
+            const int at = ((e.i + de) * alphas_ + a.i + da) * mus_ + m.i + dm;
+            sum += w * values_[static_cast<std::size_t>(at)];
         }
         return sum;
     }
@@ -159,7 +159,8 @@ FresnelWeights fresnel_weights(float cos_o, float alpha) noexcept {
     for (int corner = 0; corner < 4; ++corner) {
         const int dm = corner & 1, da = corner >> 1;
         const float w = (dm ? m.t : 1 - m.t) * (da ? a.t : 1 - a.t);
-        const FresnelWeights& at = table[static_cast<std::size_t>((a.i + da) * kMus + m.i + dm)];
+        const int place = (a.i + da) * kMus + m.i + dm;
+        const FresnelWeights& at = table[static_cast<std::size_t>(place)];
         for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += w * at[k];
     }
     return sum;

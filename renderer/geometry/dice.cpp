@@ -49,10 +49,11 @@ Sides sides_of(const Cage& cage, const Cage::Face& f, std::uint32_t patch,
 
 std::uint64_t patch_triangles(const Sides& s) {
     const auto nu = static_cast<std::uint64_t>(s.across()), nv = static_cast<std::uint64_t>(s.up());
-    const auto ring = static_cast<std::uint64_t>(s.bottom + s.right + s.top + s.left);
-    if (nu == 1) return static_cast<std::uint64_t>(s.right + s.left);
-    if (nv == 1) return static_cast<std::uint64_t>(s.bottom + s.top);
-    return 2 * (nu - 2) * (nv - 2) + ring + 2 * (nu - 2) + 2 * (nv - 2);
+    const std::uint64_t along_u = static_cast<std::uint64_t>(s.bottom) + s.top;
+    const std::uint64_t along_v = static_cast<std::uint64_t>(s.right) + s.left;
+    if (nu == 1) return along_v;
+    if (nv == 1) return along_u;
+    return 2 * (nu - 2) * (nv - 2) + along_u + along_v + 2 * (nu - 2) + 2 * (nv - 2);
 }
 
 class Dicer {

@@ -75,7 +75,7 @@ bool LivePicture::update(const PixelWindow& part, const std::vector<Layer>& laye
         for (int column = (inside.x0 - window_.x0) / kCell;
              column <= (inside.x1 - 1 - window_.x0) / kCell; ++column) {
             const PixelWindow area = overlap(inside, cell_window(column, row));
-            Cell& cell = cells_[static_cast<std::size_t>(row * columns_ + column)];
+            Cell& cell = cells_[static_cast<std::size_t>(row) * columns_ + column];
             const std::lock_guard lock(cell.mutex);
             if (!put(area, part, layers)) continue;
             changed = true;
@@ -142,7 +142,8 @@ bool LivePicture::take(Piece& piece) {
 }
 
 void LivePicture::take_all_again() {
-    for (std::size_t i = 0; i < static_cast<std::size_t>(columns_ * rows_); ++i) {
+    const std::size_t cells = static_cast<std::size_t>(columns_) * rows_;
+    for (std::size_t i = 0; i < cells; ++i) {
         Cell& cell = cells_[i];
         const std::lock_guard lock(cell.mutex);
         if (is_empty(cell.ever)) continue;

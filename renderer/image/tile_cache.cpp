@@ -53,8 +53,9 @@ public:
         const int column = x / l.tile_width, row = y / l.tile_height;
         if (level != level_ || column != column_ || row != row_) fetch(level, column, row);
         if (failed_) return {1, 0, 1, 1};
-        const int in_tile = (y - row * l.tile_height) * l.tile_width + (x - column * l.tile_width);
-        const auto at = static_cast<std::size_t>(in_tile * entry_.channels);
+        const auto across = static_cast<std::size_t>(x - column * l.tile_width),
+                   down = static_cast<std::size_t>(y - row * l.tile_height);
+        const std::size_t at = (down * l.tile_width + across) * n();
         const auto get = [&](std::size_t c) { return value(at + c, has_alpha() && c + 1 == n()); };
         switch (entry_.channels) {
             case 1:
