@@ -212,9 +212,10 @@ Atmosphere::GroundLight Atmosphere::light_on_ground(double elevation) const {
     GroundLight g{toward_sun(up, sun) * static_cast<float>(std::max(sun.y, 0.0)), Spectrum(0.0f)};
     constexpr int kRings = 6, kSectors = 2;
     for (int k = 0; k < kRings * kSectors; ++k) {
+        const int ring = k / kSectors, sector = k % kSectors;
         // Even in cos^2: each carries the same share of a Lambertian's irradiance, pi in all.
-        const double c = std::sqrt((k / kSectors + 0.5) / kRings), s = std::sqrt(1 - c * c);
-        const double phi = kPiD * (k % kSectors + 0.5) / kSectors;
+        const double c = std::sqrt((ring + 0.5) / kRings), s = std::sqrt(1 - c * c);
+        const double phi = kPiD * (sector + 0.5) / kSectors;
         Spectrum once(0.0f), all(0.0f);
         walk(up, {s * std::cos(phi), c, s * std::sin(phi)}, kRepeatedSteps,
              [&](Columns d, const Spectrum& seen, Vec3d p) {
@@ -249,8 +250,9 @@ void Atmosphere::fill_repeated() {
         const Vec3d sun = sun_at(node_elevation(i % kElevations, kElevations, kReach));
         Spectrum second(0.0f), kept(0.0f);
         for (int k = 0; k < kRings * kSectors; ++k) {
-            const double c = 2 * (k / kSectors + 0.5) / kRings - 1, s = std::sqrt(1 - c * c);
-            const double phi = kPiD * (k % kSectors + 0.5) / kSectors;
+            const int ring = k / kSectors, sector = k % kSectors;
+            const double c = 2 * (ring + 0.5) / kRings - 1, s = std::sqrt(1 - c * c);
+            const double phi = kPiD * (sector + 0.5) / kSectors;
             const Along a =
                 walk({0, kPlanetRadius_km + height, 0}, {s * std::cos(phi), c, s * std::sin(phi)},
                      kRepeatedSteps, [&](Columns d, const Spectrum& seen, Vec3d p) {

@@ -39,9 +39,9 @@ void compensate(std::vector<double>& weights, int width, double mean) {
     std::vector<double> above(weights.size());
     bool any = false;
     for (std::size_t i = 0; i < weights.size(); ++i) {
-        const auto y = static_cast<double>(i / static_cast<std::size_t>(width));
-        const double sine =
-            std::sin((y + 0.5) / static_cast<double>(rows) * 3.14159265358979323846);
+        const std::size_t y = i / static_cast<std::size_t>(width);
+        const double v = (static_cast<double>(y) + 0.5) / static_cast<double>(rows);
+        const double sine = std::sin(v * 3.14159265358979323846);
         above[i] = std::max(weights[i] - mean * sine, 0.0);
         any |= above[i] > 1e-3 * mean * sine;
     }

@@ -191,7 +191,8 @@ std::size_t MapSource::face_texel(int face, int x, int y) const {
 Vec3d MapSource::direction(std::size_t i) const {
     const int per_face = width_ * height_;
     const int face = static_cast<int>(i / per_face), j = static_cast<int>(i % per_face);
-    const MapPoint p{(j % width_ + 0.5) / width_, (j / width_ + 0.5) / height_};
+    const int x = j % width_, y = j / width_;
+    const MapPoint p{(x + 0.5) / width_, (y + 0.5) / height_};
     if (cube_) return face_direction(faces_, face, p);
     return map_direction(projection_, p).value_or(Vec3d{0, 0, 1});
 }

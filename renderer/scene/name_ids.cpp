@@ -33,7 +33,7 @@ std::size_t NameIds::bytes() const noexcept {
                       (objects_.capacity() + materials_.capacity()) * sizeof(std::uint32_t);
     for (const NameList& list : lists_) {
         sum += list.ids.capacity() * sizeof(std::uint32_t);
-        for (const std::string& name : list.names) sum += sizeof name + name.capacity();
+        for (const std::string& name : list.names) sum += sizeof(std::string) + name.capacity();
     }
     return sum;
 }
