@@ -250,8 +250,11 @@ struct Chooser {
         if (name.size() > kLongestName)
             fail("'" + name + "' is longer than 31 characters, more than Blender reads");
         // Nuke takes these for the eyes of a stereo picture.
-        for (const std::string eye : {"left", "right"}) {
-            if (name == eye || name.starts_with(eye + "_") || name.ends_with("_" + eye))
+        const auto is_of = [&](const std::string& eye) {
+            return name == eye || name.starts_with(eye + "_") || name.ends_with("_" + eye);
+        };
+        for (const char* eye : {"left", "right"}) {
+            if (is_of(eye))
                 fail("'" + name + "': Nuke takes '" + eye + "' for a view and loses the pass");
         }
     }

@@ -3,6 +3,8 @@
 #include "renderer/api/node_table.h"
 #include "renderer/io/params.h"
 
+#include <fmt/format.h>
+
 namespace tessera {
 namespace {
 
@@ -42,8 +44,7 @@ std::string nodes_markdown() {
         for (const NodeInputInfo& i : node.inputs())
             inputs += (inputs.empty() ? "`" : ", `") + std::string(i.name) + "` (" +
                       initial_of(node, i) + ")";
-        text += "| `" + std::string(node.name) + "` | " + outputs + " | " + inputs + " | " +
-                std::string(node.help) + " |\n";
+        text += fmt::format("| `{}` | {} | {} | {} |\n", node.name, outputs, inputs, node.help);
     }
     return text;
 }

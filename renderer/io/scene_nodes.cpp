@@ -195,6 +195,10 @@ std::optional<int> NodeReader::read_node(const Value& table, NodeType wanted,
     const bool image = info.op == NodeOp::image || info.op == NodeOp::triplanar;
     if (image && !read_image(table, wanted, node, at)) return std::nullopt;
     bool good = true;
+    const auto fail = [&](const SourceLoc& loc, const std::string& what) {
+        at.problems.error(loc, at.subject + ": node '" + name + "'" + what);
+        good = false;
+    };
     NodeType widest = NodeType::scalar;
     for (const auto& [key, value] : *table.table()) {
         if (key == "type" || key == "output" || (image && kImageKeys.contains(key))) continue;
@@ -205,9 +209,7 @@ std::optional<int> NodeReader::read_node(const Value& table, NodeType wanted,
         if (input == inputs.end()) {
             std::vector<std::string> names;
             for (const NodeInputInfo& i : inputs) names.emplace_back(i.name);
-            at.problems.error(value.loc, at.subject + ": node '" + name + "' has no input '" + key +
-                                             "'" + did_you_mean(key, names));
-            good = false;
+            fail(value.loc, " has no input '" + key + "'" + did_you_mean(key, names));
             continue;
         }
         const auto given = takes_word(info.op, key) ? read_word(value, info.op, key, at)
@@ -220,20 +222,13 @@ std::optional<int> NodeReader::read_node(const Value& table, NodeType wanted,
                            ? (value.list()->size() == 2 ? NodeType::vector2 : NodeType::color)
                            : NodeType::scalar;
         if (given->node >= 0) own = type_of(*given);
-        if (!joins(widest, own)) {
-            at.problems.error(value.loc, at.subject + ": node '" + name + "': " + key + " is a " +
-                                             std::string(name_of(own)) + ", beside a " +
-                                             std::string(name_of(widest)) +
-                                             " (see 'extract', "
-                                             "'luminance', 'combine3')");
-            good = false;
-        }
+        if (!joins(widest, own))
+            fail(value.loc, ": " + key + " is a " + std::string(name_of(own)) + ", beside a " +
+                                std::string(name_of(widest)) +
+                                " (see 'extract', 'luminance', 'combine3')");
         if (own != NodeType::scalar) widest = own;
     }
-    if (info.op == NodeOp::named && !node.given[0]) {
-        at.problems.error(table.loc, at.subject + ": node 'named': name is missing");
-        good = false;
-    }
+    if (info.op == NodeOp::named && !node.given[0]) fail(table.loc, ": name is missing");
     if (!good) return std::nullopt;
     const int at_index = push(std::move(node));
     types_[at_index] = info.output == NodeType::any ? widest : info.output;
