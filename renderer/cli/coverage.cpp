@@ -111,7 +111,7 @@ int run_coverage(const SceneOptions& o, const CoverageOptions& c) {
     int spp = 0;
     for (int k = 0; k < c.seeds; ++k) {
         const Rendered r =
-            render_seed(o, static_cast<std::uint64_t>(k + 1), std::nullopt, std::nullopt);
+            render_seed(o, static_cast<std::uint64_t>(k) + 1, std::nullopt, std::nullopt);
         const TrueError truth = true_error(r.picture, reference.picture);
         const ErrorEstimate& e = r.stats.error;
         rmse.add(e.rmse, truth.rmse);
@@ -125,7 +125,7 @@ int run_coverage(const SceneOptions& o, const CoverageOptions& c) {
     int claimed = 0, wrong = 0;
     for (int k = 0; k < c.seeds; ++k) {
         const Rendered r =
-            render_seed(o, static_cast<std::uint64_t>(c.seeds + k + 1), 64 * spp, target);
+            render_seed(o, static_cast<std::uint64_t>(c.seeds) + k + 1, 64 * spp, target);
         if (!r.stats.error_reached) continue;
         ++claimed;
         wrong += true_error(r.picture, reference.picture).relmse > kWrong * target.value;

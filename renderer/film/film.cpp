@@ -115,8 +115,8 @@ ReplicateView Film::replicates() const noexcept {
 
 PassSamples Film::pass_samples() const {
     PassSamples s;
-    s.light.resize(static_cast<std::size_t>(light_passes_ * kLanes));
-    if (event_albedos_) s.event_albedos.resize(static_cast<std::size_t>(kLobeEvents * kLanes));
+    s.light.resize(static_cast<std::size_t>(light_passes_) * kLanes);
+    if (event_albedos_) s.event_albedos.resize(std::size_t{kLobeEvents} * kLanes);
     return s;
 }
 
@@ -127,10 +127,12 @@ void Film::add(int x, int y, std::uint32_t index, const PathSample& s, const Pas
     tessera::add(&beauty_[of_pixel(i, replicate)], s.radiance);
     counts_[i].hits += s.alpha > 0.0f;
     ++counts_[i].samples[replicate];
-    if (passes) add_passes(i, index, s, *passes, lane);
-    if (deep_ && s.alpha > 0.0f)
+    if (!passes) return;
+    add_passes(i, index, s, *passes, lane);
+    if (!deep_) return;
+    if (s.alpha > 0.0f)
         deep_->add(i, passes->first[lane].z, s.radiance);
-    else if (deep_)
+    else
         deep_->add_background(i, s.radiance);
 }
 
@@ -184,9 +186,10 @@ void Film::add_passes(std::size_t i, std::uint32_t index, const PathSample& s,
                 break;
             case PassSource::event_albedo: {
                 Color sum(0.0f);
-                for (std::uint32_t m = plane.events; m != 0; m &= m - 1)
-                    sum += passes.event_albedos[static_cast<std::size_t>(
-                        std::countr_zero(m) * kLanes + lane)];
+                for (std::uint32_t m = plane.events; m != 0; m &= m - 1) {
+                    const int at = std::countr_zero(m) * kLanes + lane;
+                    sum += passes.event_albedos[static_cast<std::size_t>(at)];
+                }
                 tessera::add(sums, sum);
                 break;
             }

@@ -65,8 +65,10 @@ void PathPasses::start(LaneMask lanes) noexcept {
 }
 
 void PathPasses::albedos(int lane, const EventColors& albedos) noexcept {
-    for (int e = 0; e < kLobeEvents; ++e)
-        out_.event_albedos[static_cast<std::size_t>(e * kLanes + lane)] = albedos.of[e];
+    for (int e = 0; e < kLobeEvents; ++e) {
+        const int at = e * kLanes + lane;
+        out_.event_albedos[static_cast<std::size_t>(at)] = albedos.of[e];
+    }
 }
 
 void PathPasses::add_branch(Branches& to, LightPaths::State state, Color share) {
