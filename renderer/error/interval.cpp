@@ -36,7 +36,7 @@ bool stands_on_few(const ErrorSums& s) {
 
 Interval mean_interval(const ErrorSums& sums, double pixels, double quantile) noexcept {
     if (!(sums.error > 0)) return {};
-    const double t = student(quantile, sums.pixels_behind());
+    const double t = student(quantile, 2 * sums.pixels_behind());
     const double factor = std::min(std::exp(t * std::sqrt(sums.spread) / sums.error), kUnknown);
     const double mean = sums.error / pixels;
     return {mean, mean / factor, mean * factor, false};

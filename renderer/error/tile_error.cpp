@@ -107,7 +107,7 @@ constexpr double kSpread = 2.0 / (kReplicates * (kReplicates - 1)) / 12.0 / (kCh
 // Where one replicate alone saw something rare the products vanish: at least so much of the squared
 // error is added, of relative ones, whose weights are known less well, about what normal noise has
 // (docs/error.md).
-constexpr double kFloor = 0.005, kRelativeFloor = 0.4;
+constexpr double kFloor = 0.005, kRelativeFloor = 0.25;
 
 // more: sds of what else is unknown, which come on top.
 void add(ErrorSums& sums, const Lane& error, const Lane (&off)[3], const Lane& more, double floor) {
