@@ -28,8 +28,8 @@ double student(double z, double degrees) noexcept {
 
 // Of a picture without noise nothing is in doubt.
 bool stands_on_few(const ErrorSums& s) {
-    return s.error > 0 &&
-           (s.pixels_behind() < kPixelsBehind || std::sqrt(s.spread) > kDeviation * s.error);
+    return s.error > 0 && (s.pixels_behind() < kPixelsBehind || s.largest > kLargest * s.error ||
+                           std::sqrt(s.spread) > kDeviation * s.error);
 }
 
 }  // namespace

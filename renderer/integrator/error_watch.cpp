@@ -20,6 +20,11 @@ bool ErrorWatch::look(const Film& film, Workers& workers, int spp, double wall_s
     return true;
 }
 
+void ErrorWatch::look_within(const Film& film, Workers& workers) {
+    const ReplicateView view = film.replicates();
+    if (!view.counts.empty()) latest_ = estimate_error(view, film.window(), workers);
+}
+
 bool ErrorWatch::reached() const {
     return target_ && !curve_.empty() && tessera::reached(curve_.back(), *target_);
 }

@@ -20,6 +20,9 @@ public:
     /// Whether anything new came of it.
     bool look(const Film& film, Workers& workers, int spp, double wall_s, double cpu_s);
 
+    /// The same of pixels that have unequally many: no point of the curve.
+    void look_within(const Film& film, Workers& workers);
+
     /// Whether the target, if there is one, is reached.
     bool reached() const;
     /// Samples at which it will be, rounded up to whole replicates; 0: nobody knows.

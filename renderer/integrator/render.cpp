@@ -63,7 +63,7 @@ public:
             if (error_.reached()) break;
         }
         save();
-        return finish(done);
+        return finish(done, stopped_);
     }
 
 private:
@@ -118,7 +118,7 @@ private:
         if (snapshot_wanted()) {
             settings_.snapshot->store(false);
             if (!settings_.film_file.empty()) save_part_so_far();
-            RenderResult so_far = finish(done);
+            RenderResult so_far = finish(done, true);
             so_far.complete = so_far.stats.complete = false;
             settings_.on_snapshot(std::move(so_far));
             interrupted = true;
@@ -224,7 +224,7 @@ private:
         if (settings_.target && !error_.curve().empty()) {
             p.error = error_.curve().back();
             if (const double s = p.error->forecast.wall_s.value; s > 0)
-                p.fraction = std::max(p.fraction, std::min(elapsed / s, 0.99));
+                p.fraction = std::max(p.fraction, std::min((resumed_s_ + elapsed) / s, 0.99));
         }
         p.elapsed_s = elapsed;
         p.eta_s = p.fraction > 0 ? elapsed * (1 - p.fraction) / p.fraction : 0;
@@ -233,14 +233,18 @@ private:
     }
 
     void look_at_error(int done) {
-        const bool news = error_.look(film_, workers_, done, seconds_since(start_),
+        const bool news = error_.look(film_, workers_, done, resumed_s_ + seconds_since(start_),
                                       process_cpu_seconds() - cpu_start_);
         if (news && settings_.on_error) settings_.on_error(error_.curve().back());
     }
 
-    RenderResult finish(int done) {
+    // within: a pass is not through.
+    RenderResult finish(int done, bool within) {
         RenderResult r;
-        look_at_error(done);
+        if (within)
+            error_.look_within(film_, workers_);
+        else
+            look_at_error(done);
         r.complete = !stopped_;
         r.image.width = scene_.film().width;
         r.image.height = scene_.film().height;
