@@ -9,6 +9,9 @@ namespace {
 constexpr double kSlope = 1.0;  // of independent samples: minus the exponent of squared errors
 constexpr double kSlopeSpread = 0.1;  // how far pictures are from it
 constexpr double kQuantile = 1.96;
+// Intervals of relative errors narrow with this power of the samples, for the truth is known
+// better; others do not.
+constexpr double kNarrowing = 0.5;
 constexpr double kPace = 0.03;  // spread of how long a sample takes later
 
 // Logarithms of a squared error, its upper end, and the error's standard deviation.
@@ -51,6 +54,14 @@ double pace(const std::vector<ErrorPoint>& curve) {
     return last.wall_s / last.spp;
 }
 
+// Logarithm of how many times as many samples it takes; upper ends come nearer meanwhile.
+double way_to(double goal, const Logs& at, double slope, double narrowing) {
+    double way = 0;
+    for (int i = 0; i < 20; ++i)
+        way = std::max((at.error + at.upper * std::exp(-narrowing * way) - goal) / slope, 0.0);
+    return way;
+}
+
 }  // namespace
 
 const Interval& of_target(const ErrorPoint& p, const ErrorTarget& t) {
@@ -73,7 +84,7 @@ ErrorForecast forecast(const std::vector<ErrorPoint>& curve, const ErrorTarget& 
     const Logs at = logs(last, target);
     const Slope slope = slope_of(curve, target);
     const double goal = (target.relative ? 1 : 2) * std::log(target.value);
-    const double way = std::max((at.error + at.upper - goal) / slope.value, 0.0);
+    const double way = way_to(goal, at, slope.value, target.relative ? kNarrowing : 0);
     const double spread = std::hypot(at.spread, way * slope.spread) / slope.value;
     const double samples = last.spp * std::exp(way), factor = std::exp(kQuantile * spread);
     const auto at_least = [&](double n) { return std::max(n, static_cast<double>(last.spp)); };

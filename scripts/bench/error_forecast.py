@@ -57,7 +57,7 @@ def main():
     parser.add_argument("--error", default="0.0005")
     parser.add_argument("--res", default="96x64")
     parser.add_argument("--tessera", default=ROOT / "build/release/bin/tessera")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     scenes = options.scenes or sorted((ROOT / "tests/error_scenes").glob("*.toml"))
     print(f"{'':16} {'':11} samples: median, 90th  seconds: median, 90th  held")
     everything = []

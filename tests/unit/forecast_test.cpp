@@ -35,17 +35,23 @@ TEST_CASE("forecast: independent samples need four times as many for a quarter o
 }
 
 TEST_CASE("forecast: a steeper curve is followed as far as it is known") {
-    const double certain = forecast(falling(1.3, 0.001, 6), {true, std::pow(512, -1.3)}).spp.value;
-    const double vague =
-        forecast(falling(1.3, 0.5, 6), {true, std::pow(512, -1.3) * std::exp(1.96 * 0.5)})
-            .spp.value;
-    CHECK(certain == doctest::Approx(512).epsilon(0.02));
-    CHECK(vague > 1.3 * certain);  // nearer to a power of one
+    // Of the root, whose interval stays as wide as it is.
+    const auto samples = [](double spread) {
+        const double goal = std::pow(512, -1.3) * std::exp(1.96 * spread);
+        return forecast(falling(1.3, spread, 6), {false, std::sqrt(goal)}).spp.value;
+    };
+    CHECK(samples(0.001) == doctest::Approx(512).epsilon(0.02));
+    CHECK(samples(0.5) > 1.3 * 512);  // nearer to a power of one
 }
 
 TEST_CASE("forecast: the upper end of the interval is what has to come down") {
-    const ErrorForecast f = forecast(falling(1, 0.1), {true, 0.01});
-    CHECK(f.spp.value == doctest::Approx(100 * std::exp(0.196)).epsilon(0.01));
+    const std::vector<ErrorPoint> curve = falling(1, 0.1);
+    const double root = forecast(curve, {false, 0.1}).spp.value;
+    CHECK(root == doctest::Approx(100 * std::exp(0.196)).epsilon(0.01));
+    // That of a relative error comes nearer on the way.
+    const double relative = forecast(curve, {true, 0.01}).spp.value;
+    CHECK(relative > 105);
+    CHECK(relative < 0.95 * root);
 }
 
 TEST_CASE("forecast: what is reached is reached, what is black is not forecast") {
