@@ -359,7 +359,7 @@ class FullDisk(LongRender):
     def test_a_disk_with_room_for_one_keeps_it(self):
         disk = self.folder / "disk"
         disk.mkdir()
-        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=400k", "tmpfs", disk], capture_output=True)
+        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1300k", "tmpfs", disk], capture_output=True)
         if mounted.returncode != 0:
             self.skipTest(f"no mount here: {mounted.stderr.decode().strip()}")
         try:

@@ -102,7 +102,7 @@ class FilmMemory(TesseraTest):
             "--spp", "1", "--compression", "none", "--stats", "s.json", *passes, timeout=120,
         )  # fmt: skip
         memory = json.loads((self.folder / "s.json").read_text())["memory_bytes"]
-        count, mib = re.search(r"^film +1280x720, beauty and (\d+) passes, ([0-9.]+) MiB$", run.err, re.MULTILINE).groups()
+        count, mib = re.search(r"^film +1280x720, beauty four times and (\d+) passes, ([0-9.]+) MiB$", run.err, re.MULTILINE).groups()
         self.assertGreaterEqual(int(count), 40)
         # Edges between things are not foreseen; a log line has one digit after the point.
         self.assertLessEqual(float(mib), memory["film"] / 2**20 + 0.1)

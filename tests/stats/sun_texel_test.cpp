@@ -113,7 +113,7 @@ TEST_CASE("sun texel: a plane and a sphere get the quadrature of the map") {
         const Vec3d center = n * -2.0;
         add_sphere(ball, {center.x, center.y, center.z}, 2, add(ball, matte(1)));
         for (const auto& [what, scene] : {std::pair{"plane", &plane}, {"sphere", &ball}}) {
-            const Shown s = shown(*scene, n, 8, 64);
+            const Shown s = shown(*scene, n, 12, 64);
             const std::string which = what;
             CAPTURE(which);
             CAPTURE(fmt::format("{} {} {}", n.x, n.y, n.z));
