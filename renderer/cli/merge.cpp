@@ -154,7 +154,7 @@ Statistics statistics_of(const FilmHeader& h, bool complete) {
 ErrorEstimate error_of(const Film& film) {
     if (film.replicates().counts.empty()) return {};
     Workers workers;
-    return estimate_error(film.replicates(), film.window(), workers);
+    return estimate_error(film.replicates(), workers);
 }
 
 LayeredImage picture_of(FilmFile& all) {

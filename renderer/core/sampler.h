@@ -6,6 +6,7 @@
 // JCGT 9(4), 2020, with the hash of Vegdahl, "Building a Better LK Hash", 2021. Sixteen lanes at a
 // time, so that the compiler vectorises.
 
+#include <bit>
 #include <cstdint>
 
 #include "renderer/core/ray.h"
@@ -49,9 +50,14 @@ constexpr std::uint32_t pixel_seed(int x, int y, std::uint64_t seed) {
                         static_cast<std::uint32_t>(y) ^ 0x68bc21ebu);
 }
 
-/// A picture is the mean of so many independent ones: sample n belongs to replicate n modulo this,
-/// each of which has its own scrambles. How far they are apart tells the error (renderer/error).
-inline constexpr int kReplicates = 4;
+/// Where in a pixel's sequences its n-th sample lies. Between two powers of two both halves of what
+/// is to come take turns, so that at any time the points make four runs of a sequence
+/// (renderer/error/replicates.h).
+constexpr std::uint32_t point_of_sample(std::uint32_t n) {
+    if (n < 2) return n;
+    const std::uint32_t half = std::bit_floor(n) / 2, past = n - 2 * half;
+    return 2 * half + (past % 2) * half + past / 2;
+}
 
 struct SamplePairs {
     float x[kLanes];

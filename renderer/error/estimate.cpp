@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "renderer/core/parallel.h"
+#include "renderer/error/calibration.h"
 #include "renderer/error/interval.h"
 #include "renderer/error/tile_error.h"
 
@@ -13,7 +14,7 @@ namespace {
 constexpr int kTile = 32;
 
 struct Tile {
-    PixelWindow frame, picture;  // the same pixels, counted from either's corner
+    PixelWindow window;
     double sum = 0;
     TileError error;
 };
@@ -24,10 +25,8 @@ std::vector<Tile> tiles_of(const PixelWindow& w) {
     for (int y = start(w.y0); y < w.y1; y += kTile) {
         for (int x = start(w.x0); x < w.x1; x += kTile) {
             Tile t;
-            t.frame = {std::max(x, w.x0), std::max(y, w.y0), std::min(x + kTile, w.x1),
-                       std::min(y + kTile, w.y1)};
-            t.picture = {t.frame.x0 - w.x0, t.frame.y0 - w.y0, t.frame.x1 - w.x0,
-                         t.frame.y1 - w.y0};
+            t.window = {std::max(x, w.x0), std::max(y, w.y0), std::min(x + kTile, w.x1),
+                        std::min(y + kTile, w.y1)};
             out.push_back(t);
         }
     }
@@ -41,10 +40,10 @@ void find_worst(const std::vector<Tile>& tiles, ErrorEstimate& out) {
     const double quantile = joint_quantile(tiles.size());
     bool any = false;
     for (const Tile& t : tiles) {
-        const Interval i = root(mean_interval(t.error.absolute, pixels_of(t.frame), quantile));
+        const Interval i = root(mean_interval(t.error.absolute, pixels_of(t.window), quantile));
         if (!any || i.value > out.worst_tile.value) {
             out.worst_tile.value = i.value;
-            out.tile = t.frame;
+            out.tile = t.window;
             any = true;
         }
         out.worst_tile.low = std::max(out.worst_tile.low, i.low);
@@ -54,11 +53,11 @@ void find_worst(const std::vector<Tile>& tiles, ErrorEstimate& out) {
 
 }  // namespace
 
-ErrorEstimate estimate_error(const ReplicateView& picture, const PixelWindow& window,
-                             Workers& workers) {
+ErrorEstimate estimate_error(const ReplicateView& picture, Workers& workers) {
+    const PixelWindow& window = picture.window;
     std::vector<Tile> tiles = tiles_of(window);
     const int count = static_cast<int>(tiles.size());
-    workers.for_each(count, [&](int t) { tiles[t].sum = tile_sum(picture, tiles[t].picture); });
+    workers.for_each(count, [&](int t) { tiles[t].sum = tile_sum(picture, tiles[t].window); });
     double sum = 0;
     for (const Tile& t : tiles) sum += t.sum;
     const double mean = sum / std::max(pixels_of(window), 1.0);
@@ -66,8 +65,9 @@ ErrorEstimate estimate_error(const ReplicateView& picture, const PixelWindow& wi
     out.asked = true;
     out.epsilon = 0.01 * mean * mean;
     const double epsilon = std::max(out.epsilon, 1e-30);  // of a black picture
+    const Calibration calibration = calibrate(picture, epsilon);
     workers.for_each(
-        count, [&](int t) { tiles[t].error = tile_error(picture, tiles[t].picture, epsilon); });
+        count, [&](int t) { tiles[t].error = tile_error(picture, tiles[t].window, epsilon); });
     TileError all;
     for (const Tile& t : tiles) {
         all.absolute.add(t.error.absolute);
@@ -77,6 +77,11 @@ ErrorEstimate estimate_error(const ReplicateView& picture, const PixelWindow& wi
     }
     out.known = all.known && count > 0;
     if (!out.known) return out;
+    for (Tile& t : tiles)
+        t.error.absolute.scale(calibration.squared.value, calibration.squared.spread);
+    all.absolute.scale(calibration.squared.value, calibration.squared.spread);
+    all.low.scale(calibration.relative.value, calibration.relative.spread);
+    all.high.scale(calibration.relative.value, calibration.relative.spread);
     out.rmse = root(mean_interval(all.absolute, pixels_of(window), kQuantile));
     out.relmse = mean_interval(relative_error(all), pixels_of(window), kQuantile);
     find_worst(tiles, out);

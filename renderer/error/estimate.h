@@ -8,9 +8,8 @@ namespace tessera {
 
 class Workers;
 
-/// window: where the picture lies in the frame; tiles of 32 pixels start at multiples of that
-/// there. The same bits for any number of workers.
-ErrorEstimate estimate_error(const ReplicateView& picture, const PixelWindow& window,
-                             Workers& workers);
+/// Tiles of 32 pixels start at multiples of that in the frame. The same bits for any number of
+/// workers.
+ErrorEstimate estimate_error(const ReplicateView& picture, Workers& workers);
 
 }  // namespace tessera

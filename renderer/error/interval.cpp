@@ -19,13 +19,6 @@ void widen(Interval& i, double factor) {
     i.high = std::min(i.high * factor, i.value * kUnknown);
 }
 
-// A normal quantile for so many degrees of freedom (Cornish and Fisher, "Moments and Cumulants in
-// the Specification of Distributions", Revue de l'Institut International de Statistique 5, 1938).
-double student(double z, double degrees) noexcept {
-    const double n = std::max(degrees, 1.0), z3 = z * z * z;
-    return z + (z3 + z) / (4 * n) + (5 * z3 * z * z + 16 * z3 + 3 * z) / (96 * n * n);
-}
-
 // Of a picture without noise nothing is in doubt.
 bool stands_on_few(const ErrorSums& s) {
     return s.error > 0 && (s.pixels_behind() < kPixelsBehind || s.largest > kLargest * s.error ||
@@ -33,6 +26,11 @@ bool stands_on_few(const ErrorSums& s) {
 }
 
 }  // namespace
+
+double student(double z, double degrees) noexcept {
+    const double n = std::max(degrees, 1.0), z3 = z * z * z;
+    return z + (z3 + z) / (4 * n) + (5 * z3 * z * z + 16 * z3 + 3 * z) / (96 * n * n);
+}
 
 Interval mean_interval(const ErrorSums& sums, double pixels, double quantile) noexcept {
     if (!(sums.error > 0)) return {};

@@ -11,6 +11,10 @@ inline constexpr double kQuantile = 1.959963984540054;  // of the normal distrib
 /// Of the mean over pixels. Relative, so that it does not reach below zero; not yet reliable.
 Interval mean_interval(const ErrorSums& sums, double pixels, double quantile) noexcept;
 
+/// A normal quantile for so many degrees of freedom (Cornish and Fisher, "Moments and Cumulants in
+/// the Specification of Distributions", Revue de l'Institut International de Statistique 5, 1938).
+double student(double quantile, double degrees) noexcept;
+
 Interval root(const Interval& i) noexcept;
 
 /// The quantile that n independent intervals all hold with in 95 of 100 cases (Sidak, "Rectangular

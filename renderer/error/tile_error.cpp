@@ -127,6 +127,13 @@ void add(ErrorSums& sums, const Lane& error, const Lane (&off)[3], const Lane& m
 
 }  // namespace
 
+void ErrorSums::scale(double factor, double variance) noexcept {
+    error *= factor;
+    spread = spread * factor * factor + variance * error * error;
+    spread2 *= factor * factor * factor * factor;
+    largest *= factor;
+}
+
 void ErrorSums::add(const ErrorSums& o) noexcept {
     error += o.error;
     spread += o.spread;
@@ -142,9 +149,7 @@ TileError tile_error(const ReplicateView& v, const PixelWindow& part, double eps
     TileError out;
     for (int y = part.y0; y < part.y1; ++y) {
         for (int x = part.x0; x < part.x1; x += kLanes) {
-            const std::size_t first =
-                static_cast<std::size_t>(y) * static_cast<std::size_t>(v.width) +
-                static_cast<std::size_t>(x);
+            const std::size_t first = v.pixel(x, y);
             const Pixels pixels(v, first, std::min(kLanes, part.x1 - x), out.known);
             Sixteen s;
             for (int c = 0; c < kChannels; ++c)
@@ -161,8 +166,7 @@ double tile_sum(const ReplicateView& v, const PixelWindow& part) noexcept {
     double sum = 0;
     for (int y = part.y0; y < part.y1; ++y) {
         for (int x = part.x0; x < part.x1; ++x) {
-            const std::size_t p = static_cast<std::size_t>(y) * static_cast<std::size_t>(v.width) +
-                                  static_cast<std::size_t>(x);
+            const std::size_t p = v.pixel(x, y);
             double pixel = 0;
             for (int k = 0; k < kReplicates * kChannels; ++k)
                 pixel += v.sums[p * kReplicates * kChannels + static_cast<std::size_t>(k)].value();

@@ -14,6 +14,8 @@ struct ErrorSums {
     double largest = 0;  // of a pixel's errors
 
     void add(const ErrorSums& o) noexcept;
+    /// By a factor, whose logarithm has a variance.
+    void scale(double factor, double variance) noexcept;
     /// On how many pixels the spread stands.
     double pixels_behind() const noexcept;
 };
@@ -35,7 +37,7 @@ struct TileError {
     bool known = true;    // every pixel has all replicates
 };
 
-/// part: within the picture, from its top left corner.
+/// part: of the picture, in the frame.
 TileError tile_error(const ReplicateView& picture, const PixelWindow& part,
                      double epsilon) noexcept;
 

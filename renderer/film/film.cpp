@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "renderer/core/parallel.h"
+#include "renderer/error/calibration.h"
 
 namespace tessera {
 namespace {
@@ -79,12 +80,10 @@ void PassSamples::clear() {
 Film::Film(const PixelWindow& window, Passes passes, FilmExtras extras)
     : window_(window),
       passes_(std::move(passes)),
-      replicates_(extras.replicates),
+      beauty_(window, extras.replicates ? std::optional(extras.seed) : std::nullopt),
       planes_(passes_.size()) {
     const std::size_t n =
         static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
-    beauty_.resize(of_pixel(n, 0));
-    counts_.resize(n);
     if (extras.deep) deep_.emplace(n);
     if (std::any_of(passes_.begin(), passes_.end(), wants_nearest)) nearest_.resize(n);
     for (std::size_t p = 0; p < passes_.size(); ++p) {
@@ -100,19 +99,6 @@ Film::Film(const PixelWindow& window, Passes passes, FilmExtras extras)
     }
 }
 
-Sum Film::beauty(std::size_t i, int channel) const noexcept {
-    Sum sum;
-    const std::size_t first = of_pixel(i, 0), end = of_pixel(i + 1, 0);
-    for (std::size_t k = first; k < end; k += 3)
-        sum.add(beauty_[k + static_cast<std::size_t>(channel)]);
-    return sum;
-}
-
-ReplicateView Film::replicates() const noexcept {
-    if (!replicates_) return {};
-    return {window_.width(), window_.height(), beauty_, counts_};
-}
-
 PassSamples Film::pass_samples() const {
     PassSamples s;
     s.light.resize(static_cast<std::size_t>(light_passes_) * kLanes);
@@ -123,10 +109,7 @@ PassSamples Film::pass_samples() const {
 void Film::add(int x, int y, std::uint32_t index, const PathSample& s, const PassSamples* passes,
                int lane) noexcept {
     const std::size_t i = pixel(x, y);
-    const std::uint32_t replicate = index % kReplicates;
-    tessera::add(&beauty_[of_pixel(i, replicate)], s.radiance);
-    counts_[i].hits += s.alpha > 0.0f;
-    ++counts_[i].samples[replicate];
+    beauty_.add(i, index, s);
     if (!passes) return;
     add_passes(i, index, s, *passes, lane);
     if (!deep_) return;
@@ -236,13 +219,11 @@ void Film::add_passes(std::size_t i, std::uint32_t index, const PathSample& s,
 
 void Film::merge(const Film& other) {
     const PixelWindow& w = other.window_;
+    beauty_.merge_probes(other.beauty_);
     for (int y = w.y0; y < w.y1; ++y) {
         for (int x = w.x0; x < w.x1; ++x) {
             const std::size_t to = pixel(x, y), from = other.pixel(x, y);
-            const std::size_t width = of_pixel(1, 0);
-            for (std::size_t k = 0; k < width; ++k)
-                beauty_[to * width + k].add(other.beauty_[from * width + k]);
-            counts_[to].add(other.counts_[from]);
+            beauty_.merge(to, other.beauty_, from);
             if (deep_) deep_->merge(to, *other.deep_, from);
             bool nearer = false;
             if (!nearest_.empty()) {
@@ -268,15 +249,18 @@ void Film::merge(const Film& other) {
 
 std::vector<Layer> Film::layers(Workers& workers) const {
     std::vector<Layer> out = outline();
+    const double calibration =
+        beauty_.has_replicates() ? calibrate(replicates(), 0).squared.value : 1;
     workers.for_each(static_cast<int>(out.size()), [&](int i) { make_room(out[i], window_); });
-    workers.for_each(window_.height(), [&](int row) { put_row(window_, window_.y0 + row, out); });
+    workers.for_each(window_.height(),
+                     [&](int row) { put_row(window_, window_.y0 + row, calibration, out); });
     return out;
 }
 
 std::vector<Layer> Film::layers(const PixelWindow& part) const {
     std::vector<Layer> out = outline();
     for (Layer& layer : out) make_room(layer, part);
-    for (int y = part.y0; y < part.y1; ++y) put_row(part, y, out);
+    for (int y = part.y0; y < part.y1; ++y) put_row(part, y, 1.0, out);
     return out;
 }
 
@@ -290,14 +274,16 @@ std::vector<Layer> Film::outline() const {
     return out;
 }
 
-void Film::put_row(const PixelWindow& part, int y, std::vector<Layer>& layers) const {
+void Film::put_row(const PixelWindow& part, int y, double calibration,
+                   std::vector<Layer>& layers) const {
     const auto width = static_cast<std::size_t>(part.width());
     const std::size_t from = pixel(part.x0, y), to = static_cast<std::size_t>(y - part.y0) * width;
     for (std::size_t x = 0; x < width; ++x) {
-        const PixelCounts& n = counts_[from + x];
+        const PixelCounts& n = counts()[from + x];
         const double w = n.total() > 0 ? 1.0 / n.total() : 0.0;
         float* const out = &layers[0].pixels[(to + x) * 4];
-        for (int c = 0; c < 3; ++c) out[c] = static_cast<float>(beauty(from + x, c).value() * w);
+        for (std::size_t c = 0; c < 3; ++c)
+            out[c] = static_cast<float>(beauty_.sum(from + x, c).value() * w);
         out[3] = static_cast<float>(n.hits * w);
     }
     auto layer = layers.begin() + 1;
@@ -306,16 +292,18 @@ void Film::put_row(const PixelWindow& part, int y, std::vector<Layer>& layers) c
         float* const out = &layer->pixels[to * layer->channels.size()];
         for (std::size_t x = 0; x < width; ++x)
             put_pixel(passes_[p], planes_[p], from + x, out + x * layer->channels.size());
+        for (std::size_t x = 0; passes_[p].source == PassSource::standard_error && x < width; ++x)
+            beauty_.standard_error(from + x, calibration, out + 3 * x);
         ++layer;
     }
 }
 
 bool Film::take_deep(const DeepPixelsState& state) {
     std::optional<DeepPixels> read = DeepPixels::from(state);
-    bool fits = read && read->pixels() == counts_.size();
-    for (std::size_t i = 0; fits && i < counts_.size(); ++i) {
+    bool fits = read && read->pixels() == counts().size();
+    for (std::size_t i = 0; fits && i < counts().size(); ++i) {
         const DeepPixels::Counts n = read->counts(i);
-        fits = n.hits == counts_[i].hits && n.hits + n.background <= counts_[i].total();
+        fits = n.hits == counts()[i].hits && n.hits + n.background <= counts()[i].total();
     }
     if (fits) deep_ = std::move(read);
     return fits;
@@ -324,21 +312,21 @@ bool Film::take_deep(const DeepPixelsState& state) {
 DeepImage Film::deep_image() const {
     DeepImage image;
     image.window = window_;
-    for (std::size_t i = 0; deep_ && i < counts_.size(); ++i)
-        image.counts.push_back(deep_->put(i, counts_[i].total(), image.samples));
+    for (std::size_t i = 0; deep_ && i < counts().size(); ++i)
+        image.counts.push_back(deep_->put(i, counts()[i].total(), image.samples));
     return image;
 }
 
 std::vector<std::uint32_t> Film::sample_counts() const {
     std::vector<std::uint32_t> out;
-    out.reserve(counts_.size());
-    for (const PixelCounts& n : counts_) out.push_back(n.total());
+    out.reserve(counts().size());
+    for (const PixelCounts& n : counts()) out.push_back(n.total());
     return out;
 }
 
 void Film::put_pixel(const Pass& pass, const Plane& plane, std::size_t i, float* out) const {
     const std::size_t channels = pass.channels.size();
-    const std::uint32_t samples = counts_[i].total(), hits = counts_[i].hits;
+    const std::uint32_t samples = counts()[i].total(), hits = counts()[i].hits;
     const double each = samples > 0 ? 1.0 / samples : 0.0;
     const Sum* const sums = plane.sums.data() + i * sums_of(pass);
     switch (pass.source) {
@@ -349,8 +337,7 @@ void Film::put_pixel(const Pass& pass, const Plane& plane, std::size_t i, float*
             *out = static_cast<float>(samples);
             return;
         case PassSource::standard_error:
-            put_standard_error(i, channels, out);
-            return;
+            return;  // put_row() knows its calibration
         case PassSource::seconds:
             *out = static_cast<float>(sums->value());
             return;
@@ -361,7 +348,7 @@ void Film::put_pixel(const Pass& pass, const Plane& plane, std::size_t i, float*
         }
         case PassSource::variance:
             for (std::size_t c = 0; c < channels; ++c) {
-                const double sum = beauty(i, static_cast<int>(c)).value(), count = samples;
+                const double sum = beauty_.sum(i, c).value(), count = samples;
                 const double v =
                     count > 1 ? (sums[c].value() - sum * sum * each) / (count * (count - 1)) : 0.0;
                 out[c] = static_cast<float>(std::max(v, 0.0));
@@ -386,25 +373,8 @@ void Film::put_pixel(const Pass& pass, const Plane& plane, std::size_t i, float*
     }
 }
 
-// 0 while a replicate has no samples.
-void Film::put_standard_error(std::size_t i, std::size_t channels, float* out) const {
-    const PixelCounts& n = counts_[i];
-    const double total = n.total();
-    std::fill_n(out, channels, 0.0f);
-    if (!replicates_ || std::count(std::begin(n.samples), std::end(n.samples), 0u) > 0) return;
-    for (std::size_t c = 0; c < channels; ++c) {
-        const double mean = beauty(i, static_cast<int>(c)).value() / total;
-        double sum = 0;
-        for (std::uint32_t r = 0; r < kReplicates; ++r) {
-            const double off = beauty_[of_pixel(i, r) + c].value() / n.samples[r] - mean;
-            sum += n.samples[r] / total * off * off;
-        }
-        out[c] = static_cast<float>(std::sqrt(sum / (kReplicates - 1)));
-    }
-}
-
 std::size_t Film::bytes() const noexcept {
-    std::size_t sum = capacity_bytes(beauty_) + capacity_bytes(counts_) + capacity_bytes(nearest_);
+    std::size_t sum = beauty_.bytes() + capacity_bytes(nearest_);
     if (deep_) sum += deep_->bytes();
     for (const Plane& p : planes_) {
         sum += capacity_bytes(p.sums) + capacity_bytes(p.nearest);
@@ -427,13 +397,14 @@ std::uint64_t Film::expected_bytes(const PixelWindow& window, const Passes& pass
 std::vector<Film::Array> Film::arrays() {
     std::vector<Array> out;
     const std::vector<ArraySize> sizes =
-        array_sizes(window_, passes_, {deep_.has_value(), replicates_});
+        array_sizes(window_, passes_, {deep_.has_value(), beauty_.has_replicates(), 0});
     const auto add = [&](auto& v) {
         if (!v.empty()) out.push_back({sizes[out.size()].name, bytes_of(v)});
     };
-    add(beauty_), add(counts_);
+    add(beauty_.sums()), add(beauty_.counts());
     add(nearest_);
     for (Plane& plane : planes_) add(plane.sums), add(plane.nearest);
+    if (Probes* p = probes()) add(p->sums()), add(p->counts());
     return out;
 }
 
@@ -441,7 +412,8 @@ std::vector<Film::ArraySize> Film::array_sizes(const PixelWindow& window, const 
                                                FilmExtras extras) {
     const std::uint64_t n =
         static_cast<std::uint64_t>(window.width()) * static_cast<std::uint64_t>(window.height());
-    const std::uint64_t sums = extras.replicates ? 3 * kReplicates : 3;
+    const std::uint64_t sums = Beauty::sums_of_pixel(extras.replicates);
+    const std::uint64_t cells = extras.replicates ? ProbeGrid(window, 0).cells() : 0;
     std::vector<ArraySize> out{{"beauty", n * sums * sizeof(Sum)},
                                {"counts", n * sizeof(PixelCounts)}};
     if (std::any_of(passes.begin(), passes.end(), wants_nearest))
@@ -451,6 +423,10 @@ std::vector<Film::ArraySize> Film::array_sizes(const PixelWindow& window, const 
             out.push_back({p.name + ".sums", n * sums_of(p) * sizeof(Sum)});
         if (how(p.source) == How::nearest)
             out.push_back({p.name + ".nearest", n * p.channels.size() * sizeof(float)});
+    }
+    if (extras.replicates) {
+        out.push_back({"probes.sums", 3 * cells * sizeof(Sum)});
+        out.push_back({"probes.counts", cells * sizeof(std::uint32_t)});
     }
     return out;
 }

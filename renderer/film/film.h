@@ -15,7 +15,7 @@
 #include "renderer/core/sum.h"
 #include "renderer/core/vec.h"
 #include "renderer/core/zeroed.h"
-#include "renderer/error/replicates.h"
+#include "renderer/film/beauty.h"
 #include "renderer/film/deep_pixels.h"
 #include "renderer/film/film_extras.h"
 #include "renderer/film/id_coverage.h"
@@ -25,13 +25,7 @@ namespace tessera {
 
 class Workers;
 
-/// What one camera path gives to its pixel.
-struct PathSample {
-    Color radiance{0.0f};
-    float alpha = 0;  // 1 where the camera ray hit something
-};
-
-/// What its first surface gives to the passes.
+/// What the first surface of a path gives to the passes.
 struct FirstHit {
     bool hit = false;  // else nothing below but the albedo is there
     bool has_uv = false;
@@ -72,8 +66,10 @@ public:
     /// for beauty alone; index: of the sample.
     void add(int x, int y, std::uint32_t index, const PathSample& s, const PassSamples* passes,
              int lane) noexcept;
+    /// What tells the error by a second rendering; null if that is not wanted.
+    Probes* probes() noexcept { return beauty_.probes(); }
     /// Samples that the pixel has.
-    std::uint32_t samples(int x, int y) const noexcept { return counts_[pixel(x, y)].total(); }
+    std::uint32_t samples(int x, int y) const noexcept { return counts()[pixel(x, y)].total(); }
     /// Adds a film of the same passes whose window lies within this one; the bits of the sum do not
     /// depend on the order.
     void merge(const Film& other);
@@ -86,10 +82,12 @@ public:
         return planes_[pass].coverage ? &*planes_[pass].coverage : nullptr;
     }
     /// Empty unless they are kept.
-    ReplicateView replicates() const noexcept;
+    ReplicateView replicates() const noexcept { return beauty_.replicates(); }
     const DeepPixels* deep() const noexcept { return deep_ ? &*deep_ : nullptr; }
     /// Depths that go with what arrays() holds already; false if they do not.
     bool take_deep(const DeepPixelsState& state);
+    /// Of what arrays() was filled with: whether samples can be added to it.
+    bool counts_make_sense() const noexcept { return beauty_.counts_make_sense(); }
     /// Counts and samples; the rest is the caller's.
     DeepImage deep_image() const;
     /// Samples of all pixels.
@@ -136,20 +134,14 @@ private:
     void add_passes(std::size_t i, std::uint32_t index, const PathSample& s,
                     const PassSamples& passes, int lane) noexcept;
     std::vector<Layer> outline() const;
-    void put_row(const PixelWindow& part, int y, std::vector<Layer>& layers) const;
-    void put_standard_error(std::size_t i, std::size_t channels, float* out) const;
+    void put_row(const PixelWindow& part, int y, double calibration,
+                 std::vector<Layer>& layers) const;
     void put_pixel(const Pass& pass, const Plane& plane, std::size_t i, float* out) const;
+    std::span<const PixelCounts> counts() const noexcept { return beauty_.counts(); }
 
     PixelWindow window_;
     Passes passes_;
-    // Sums of beauty: [pixel][replicate][channel], or [pixel][channel].
-    Sum beauty(std::size_t i, int channel) const noexcept;
-    std::size_t of_pixel(std::size_t i, std::uint32_t replicate) const noexcept {
-        return 3 * (replicates_ ? i * kReplicates + replicate : i);
-    }
-    bool replicates_;
-    ZeroedArray<Sum> beauty_;
-    ZeroedArray<PixelCounts> counts_;
+    Beauty beauty_;
     std::vector<Nearest> nearest_;
     std::vector<Plane> planes_;  // as passes_
     std::optional<DeepPixels> deep_;

@@ -156,6 +156,8 @@ FilmFile read_film_file(const std::string& path) {
     }
     if (header.extras.deep && !film.take_deep(deep))
         file.fail("is damaged: its depths contradict each other");
+    if (!film.counts_make_sense())
+        file.fail("is damaged: its pixels have replicates of impossible length");
     const SampleCounts counts = sample_range(film);
     if (counts.least != header.least || counts.most != header.most)
         file.fail("is damaged: its pixels have not the samples that its header says");

@@ -215,7 +215,7 @@ FilmHeader film_header_from(const std::string& text) {
         if (pass.channels.empty() || pass.channels.size() > most || h.passes.size() > kMaxPasses)
             throw std::runtime_error("passes that no scene has");
     }
-    h.extras = {j.at("deep"), j.at("replicates")};
+    h.extras = {j.at("deep"), j.at("replicates"), h.seed};
     constexpr int kMost = std::numeric_limits<int>::max();
     h.first_sample = small(j, "first_sample", 0, kMost);
     h.least = static_cast<std::uint32_t>(whole(j, "least_samples", 0, kMost));

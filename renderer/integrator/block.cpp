@@ -15,10 +15,14 @@ void Counters::add_invalid(InvalidCause cause, int x, int y, std::uint32_t sampl
     }
 }
 
+void Counters::add_rays(const RayCounts& more) noexcept {
+    rays.camera += more.camera;
+    rays.bounce += more.bounce;
+    rays.shadow += more.shadow;
+}
+
 void Counters::add(const Counters& o) noexcept {
-    rays.camera += o.rays.camera;
-    rays.bounce += o.rays.bounce;
-    rays.shadow += o.rays.shadow;
+    add_rays(o.rays);
     samples += o.samples;
     for (int i = 0; i < kInvalidCauses; ++i) invalid[i] += o.invalid[i];
     if (o.first.set && (!first.set || std::tuple(o.first.sample, o.first.y, o.first.x) <
@@ -36,19 +40,19 @@ LaneMask lanes_inside(const PixelWindow& w, int x, int y) noexcept {
     return lanes;
 }
 
-BlockSeeds block_seeds(const BlockJob& job, std::uint64_t seed) noexcept {
-    BlockSeeds out;
-    for (int lane = 0; lane < kLanes; ++lane) {
-        const std::uint32_t pixel = pixel_seed(lane_x(job, lane), lane_y(job, lane), seed);
-        for (std::uint32_t r = 0; r < kReplicates; ++r) out.of[r][lane] = hash_combine(pixel, r);
-    }
-    return out;
+void aim_block(BlockJob& job, int x, int y, std::uint64_t seed) noexcept {
+    for (int lane = 0; lane < kLanes; ++lane)
+        aim_lane(job, lane, x + (lane & 3), y + (lane >> 2), seed);
 }
 
-void choose_sample(BlockJob& job, const BlockSeeds& seeds, std::uint32_t sample) noexcept {
+void aim_lane(BlockJob& job, int lane, int x, int y, std::uint64_t seed) noexcept {
+    job.x[lane] = x, job.y[lane] = y;
+    job.seeds[lane] = pixel_seed(x, y, seed);
+}
+
+void choose_sample(BlockJob& job, std::uint32_t sample) noexcept {
     job.sample = sample;
-    job.index = sample / kReplicates;
-    std::copy_n(seeds.of[sample % kReplicates], kLanes, job.seeds);
+    job.index = point_of_sample(sample);
 }
 
 void film_points(const BlockJob& job, SamplePairs& out) noexcept {
@@ -56,8 +60,8 @@ void film_points(const BlockJob& job, SamplePairs& out) noexcept {
     sample_pairs(job.seeds, job.index, dim::kFilter, u);
     for (int lane = 0; lane < kLanes; ++lane) {
         const Vec2f offset = job.filter->offset(u.at(lane));
-        out.x[lane] = static_cast<float>(lane_x(job, lane)) + 0.5f + offset.x;
-        out.y[lane] = static_cast<float>(lane_y(job, lane)) + 0.5f + offset.y;
+        out.x[lane] = static_cast<float>(job.x[lane]) + 0.5f + offset.x;
+        out.y[lane] = static_cast<float>(job.y[lane]) + 0.5f + offset.y;
     }
 }
 

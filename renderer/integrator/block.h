@@ -1,6 +1,6 @@
 #pragma once
-// The unit of work: an aligned 4x4 block of pixels at one sample index, absolute in the frame. Its
-// bits depend on nothing else: not on tile, crop or thread.
+// The unit of work: sixteen pixels at one sample index, as a rule an aligned 4x4 block, absolute in
+// the frame. A pixel's bits depend on nothing else: not on its neighbours, tile, crop or thread.
 
 #include <array>
 #include <cstdint>
@@ -32,6 +32,7 @@ struct Counters {
     } first;
 
     void add_invalid(InvalidCause cause, int x, int y, std::uint32_t sample) noexcept;
+    void add_rays(const RayCounts& more) noexcept;
     void add(const Counters& other) noexcept;
 };
 
@@ -39,11 +40,11 @@ struct BlockJob {
     const Scene* scene = nullptr;
     const FilterSampler* filter = nullptr;
     PathPasses* passes = nullptr;  // null: beauty alone
-    int x = 0, y = 0;              // top left pixel, multiples of 4
     LaneMask lanes = kAllLanes;
-    std::uint32_t sample = 0;       // of the pixels: the how manieth
-    std::uint32_t index = 0;        // of the point in its replicate's sequences
-    std::uint32_t seeds[kLanes]{};  // of these
+    int x[kLanes]{}, y[kLanes]{};   // the pixels
+    std::uint32_t seeds[kLanes]{};  // of their scrambles
+    std::uint32_t sample = 0;       // of each: the how manieth
+    std::uint32_t index = 0;        // of its point
     RayLog* log = nullptr;          // takes down every ray, for the benchmark
 };
 
@@ -55,13 +56,11 @@ using BlockKernel = void (*)(const BlockJob& job, BlockSamples& out, Counters& c
 /// The kernel of a name ("basic", "surface", "full") for an integrator.
 BlockKernel find_kernel(Integrator integrator, std::string_view name);
 
-/// Seeds of a block's pixels, by replicate.
-struct BlockSeeds {
-    std::uint32_t of[kReplicates][kLanes];
-};
-BlockSeeds block_seeds(const BlockJob& job, std::uint64_t seed) noexcept;
-/// Sets sample, index and seeds.
-void choose_sample(BlockJob& job, const BlockSeeds& seeds, std::uint32_t sample) noexcept;
+/// Sets pixels and seeds: of the block whose top left pixel is (x, y), multiples of 4.
+void aim_block(BlockJob& job, int x, int y, std::uint64_t seed) noexcept;
+void aim_lane(BlockJob& job, int lane, int x, int y, std::uint64_t seed) noexcept;
+/// Sets sample and index.
+void choose_sample(BlockJob& job, std::uint32_t sample) noexcept;
 
 /// Numbers that decide partial opacity for the rays of one step.
 inline void ray_seeds(const BlockJob& job, std::uint32_t step,
@@ -75,8 +74,5 @@ void film_points(const BlockJob& job, SamplePairs& out) noexcept;
 
 /// Lanes of the block at (x, y) whose pixels lie in the window.
 LaneMask lanes_inside(const PixelWindow& window, int x, int y) noexcept;
-
-inline int lane_x(const BlockJob& job, int lane) { return job.x + (lane & 3); }
-inline int lane_y(const BlockJob& job, int lane) { return job.y + (lane >> 2); }
 
 }  // namespace tessera

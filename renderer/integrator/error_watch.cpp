@@ -13,7 +13,7 @@ bool ErrorWatch::look(const Film& film, Workers& workers, int spp, double wall_s
     latest_.asked = true;
     if (spp < kReplicates) return false;
     if (!curve_.empty() && curve_.back().spp == spp) return false;
-    latest_ = estimate_error(view, film.window(), workers);
+    latest_ = estimate_error(view, workers);
     if (!latest_.known) return false;
     curve_.push_back({spp, wall_s, cpu_s, latest_.rmse, latest_.relmse, {}});
     curve_.back().forecast = forecast(curve_, target_.value_or(kUsualTarget));
@@ -22,7 +22,7 @@ bool ErrorWatch::look(const Film& film, Workers& workers, int spp, double wall_s
 
 void ErrorWatch::look_within(const Film& film, Workers& workers) {
     const ReplicateView view = film.replicates();
-    if (!view.counts.empty()) latest_ = estimate_error(view, film.window(), workers);
+    if (!view.counts.empty()) latest_ = estimate_error(view, workers);
 }
 
 bool ErrorWatch::reached() const {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "renderer/core/sampler.h"
+#include "renderer/error/replicates.h"
 
 namespace tessera {
 namespace {
@@ -30,7 +30,7 @@ int PassPlan::next(int done, double elapsed_s, int wanted) const {
     return std::min(count, rest);
 }
 
-// Equally many samples for all replicates, once there are more than that.
+// So that the runs of points that grow are equally long.
 int PassPlan::whole(int done, int count) {
     const int over = (done + count) % kReplicates;
     return count > over ? count - over : count;

@@ -170,30 +170,71 @@ private:
         bool whole = true;
         for (int y = tile.y0 & ~(kBlockSize - 1); whole && y < tile.y1; y += kBlockSize) {
             for (int x = tile.x0 & ~(kBlockSize - 1); whole && x < tile.x1; x += kBlockSize) {
-                job.x = x, job.y = y;
+                aim_block(job, x, y, scene_.settings().seed);
                 job.lanes = lanes_inside(tile, x, y);
                 whole = render_block(job, last, samples, passes, counters);
             }
         }
+        Counters second;
+        if (whole && film_.probes()) whole = render_probes(tile, last, second);
+        counters.add_rays(second.rays);
         const std::lock_guard lock(mutex_);
         counters_.add(counters);
         return whole;
     }
 
+    // A second time, with other scrambles; sixteen at once, wherever they lie.
+    bool render_probes(const PixelWindow& tile, int last, Counters& counters) {
+        Probes& probes = *film_.probes();
+        std::vector<std::size_t> cells;
+        probes.grid().each_inside(
+            tile, [&](std::size_t cell, ProbeGrid::Pixel) { cells.push_back(cell); });
+        const std::uint64_t seed = probe_seed(scene_.settings().seed);
+        for (std::size_t first = 0; first < cells.size(); first += kLanes) {
+            const std::size_t count = std::min<std::size_t>(kLanes, cells.size() - first);
+            BlockJob job;
+            job.scene = &scene_;
+            job.filter = &filter_;
+            for (std::size_t i = 0; i < count; ++i) {
+                const ProbeGrid::Pixel p = probes.grid().probe(cells[first + i]);
+                aim_lane(job, static_cast<int>(i), p.x, p.y, seed);
+            }
+            if (!render_again(job, {&cells[first], count}, last, counters)) return false;
+        }
+        return true;
+    }
+
+    // The cells' probes need not have equally many samples: a run that was resumed had other tiles.
+    bool render_again(BlockJob& job, std::span<const std::size_t> cells, int last,
+                      Counters& counters) {
+        Probes& probes = *film_.probes();
+        BlockSamples samples;
+        for (std::uint32_t n = 0; n < static_cast<std::uint32_t>(last); ++n) {
+            job.lanes = 0;
+            for (std::size_t i = 0; i < cells.size(); ++i)
+                if (probes.samples(cells[i]) == n) job.lanes |= 1u << i;
+            if (job.lanes == 0) continue;
+            choose_sample(job, static_cast<std::uint32_t>(settings_.first_sample) + n);
+            kernel_(job, samples, counters);
+            for (std::size_t i = 0; i < cells.size(); ++i)
+                if ((job.lanes >> i) & 1u) probes.add(cells[i], samples[i].radiance);
+            if (interrupted()) return false;
+        }
+        return true;
+    }
+
     bool render_block(BlockJob& job, int last, BlockSamples& samples, PassSamples& passes,
                       Counters& counters) {
         const int lane = std::countr_zero(job.lanes);  // all have equally many samples
-        const BlockSeeds seeds = block_seeds(job, scene_.settings().seed);
-        for (int n = static_cast<int>(film_.samples(lane_x(job, lane), lane_y(job, lane)));
-             n < last; ++n) {
-            choose_sample(job, seeds, static_cast<std::uint32_t>(settings_.first_sample + n));
+        for (int n = static_cast<int>(film_.samples(job.x[lane], job.y[lane])); n < last; ++n) {
+            choose_sample(job, static_cast<std::uint32_t>(settings_.first_sample + n));
             if (job.passes && times_)
                 timed(job, samples, passes, counters);
             else
                 kernel_(job, samples, counters);
             for (int i = 0; i < kLanes; ++i) {
                 if ((job.lanes >> i) & 1u)
-                    film_.add(lane_x(job, i), lane_y(job, i), job.sample, samples[i],
+                    film_.add(job.x[i], job.y[i], job.sample, samples[i],
                               job.passes ? &passes : nullptr, i);
             }
             if (interrupted()) return false;

@@ -40,11 +40,10 @@ ReplayTimes time_replay(const Scene& scene, const RenderSettings& settings) {
             Counters counters;
             for (int y = tile.y0 & ~(kBlockSize - 1); y < tile.y1; y += kBlockSize) {
                 for (int x = tile.x0 & ~(kBlockSize - 1); x < tile.x1; x += kBlockSize) {
-                    job.x = x, job.y = y;
+                    aim_block(job, x, y, scene.settings().seed);
                     job.lanes = lanes_inside(tile, x, y);
-                    const BlockSeeds seeds = block_seeds(job, scene.settings().seed);
                     for (int s = 0; s < scene.settings().spp; ++s) {
-                        choose_sample(job, seeds, static_cast<std::uint32_t>(s));
+                        choose_sample(job, static_cast<std::uint32_t>(s));
                         kernel(job, samples, counters);
                     }
                 }

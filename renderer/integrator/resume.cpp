@@ -40,7 +40,7 @@ FilmExtras film_extras(const Scene& scene, const RenderSettings& settings) {
     const bool wanted = std::any_of(passes.begin(), passes.end(), [](const Pass& p) {
         return p.source == PassSource::standard_error;
     });
-    return {settings.deep, settings.error_estimate || wanted};
+    return {settings.deep, settings.error_estimate || wanted, scene.settings().seed};
 }
 
 FilmHeader film_header(const Scene& scene, const PixelWindow& window,

@@ -249,7 +249,7 @@ private:
     }
 
     void invalid(InvalidCause cause, int i) noexcept {
-        counters_.add_invalid(cause, lane_x(job_, i), lane_y(job_, i), job_.sample);
+        counters_.add_invalid(cause, job_.x[i], job_.y[i], job_.sample);
     }
 
     const BlockJob& job_;

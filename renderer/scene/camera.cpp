@@ -129,13 +129,14 @@ void Camera::place_all_around(const CameraDesc& desc, int width, int height, Vec
 
 // A pixel's samples beyond an edge of its face go on in the face's plane: the strip's neighbours
 // are not the cube's.
-void Camera::all_around(const SamplePairs& film, int x, RayPacket& out) const noexcept {
+void Camera::all_around(const SamplePairs& film, const int (&x)[kLanes],
+                        RayPacket& out) const noexcept {
     for (int i = 0; i < kLanes; ++i) {
         Vec3f d;
         if (projection_ == Projection::latlong) {
             d = latlong_direction({0.5f * to_x_ * film.x[i], 0.5f * to_y_ * film.y[i]});
         } else {
-            const int number = std::min((x + (i & 3)) / face_px_, 5);
+            const int number = std::min(x[i] / face_px_, 5);
             const FaceFrame& face = face_frame(CubeFaces::opengl, number);
             const float column = film.x[i] - static_cast<float>(number * face_px_);
             d = normalize(Vec3f(face.forward) + Vec3f(face.right) * (column * to_y_ - 1.0f) +
@@ -145,7 +146,7 @@ void Camera::all_around(const SamplePairs& film, int x, RayPacket& out) const no
     }
 }
 
-void Camera::rays(const SamplePairs& film, const SamplePairs& lens, int x,
+void Camera::rays(const SamplePairs& film, const SamplePairs& lens, const int (&x)[kLanes],
                   RayPacket& out) const noexcept {
     if (shows_all_directions(projection_)) return all_around(film, x, out);
     const bool orthographic = projection_ == Projection::orthographic;

@@ -18,7 +18,7 @@ public:
     /// film: pixels, y downward, (0, 0) the top left corner, for a block of 4x4 pixels from column
     /// x on. lens: unit square, read only if has_lens(). Fills in origins, directions, t_max and
     /// masks of all lanes.
-    void rays(const SamplePairs& film, const SamplePairs& lens, int x,
+    void rays(const SamplePairs& film, const SamplePairs& lens, const int (&x)[kLanes],
               RayPacket& out) const noexcept;
     /// A ray's footprint at its origin, scene units, and the full angle by which it grows, radians.
     float cone_width() const noexcept { return footprint_; }
@@ -34,7 +34,7 @@ public:
 private:
     void place_all_around(const CameraDesc& desc, int width, int height, Vec3d origin,
                           Vec3d center);
-    void all_around(const SamplePairs& film, int x, RayPacket& out) const noexcept;
+    void all_around(const SamplePairs& film, const int (&x)[kLanes], RayPacket& out) const noexcept;
 
     Vec3f position_, right_, up_,
         forward_;  // right_ and up_ scaled to half the film at distance 1 (or in units)

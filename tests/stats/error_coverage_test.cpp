@@ -54,8 +54,19 @@ Coverage measure(Truth truth, Noise noise) {
             squared += d * d / (kSide * kSide);
             relative += d * d / (truth(i) * truth(i) + epsilon) / (kSide * kSide);
         }
-        const ErrorEstimate e =
-            estimate_error({kSide, kSide, sums, counts}, {0, 0, kSide, kSide}, workers);
+        // Independent replicates: a second rendering is of one mould with the first.
+        const ProbeGrid grid({0, 0, kSide, kSide}, static_cast<std::uint64_t>(k));
+        std::vector<Sum> probe_sums(3 * grid.cells());
+        const std::vector<std::uint32_t> probe_counts(grid.cells(), kReplicates);
+        grid.each_inside({0, 0, kSide, kSide}, [&](std::size_t cell, ProbeGrid::Pixel p) {
+            const int i = p.y * kSide + p.x;
+            for (int r = 0; r < kReplicates; ++r) {
+                const double v = truth(i) * noise(i, random);
+                for (std::size_t ch = 0; ch < 3; ++ch) probe_sums[3 * cell + ch].add(v);
+            }
+        });
+        const ErrorEstimate e = estimate_error(
+            {{0, 0, kSide, kSide}, sums, counts, {grid, probe_sums, probe_counts}}, workers);
         const double rmse = std::sqrt(squared);
         c.rmse += rmse >= e.rmse.low && rmse <= e.rmse.high;
         c.relmse += relative >= e.relmse.low && relative <= e.relmse.high;
@@ -69,8 +80,12 @@ Coverage measure(Truth truth, Noise noise) {
     return c;
 }
 
-// Of 400 intervals that hold with 0.95: 380 +- 4.4; three of those are 367.
-constexpr int kLeast = 367, kMost = 393;
+// Of 400 intervals that hold with 0.95: 380 +- 4.4; three of those are 367. They may hold more
+// often: the doubt about the calibration is one between scenes, and 72 probes do not take all of
+// it.
+constexpr int kLeast = 367;
+// Nor all of the usual factor, 0.92 of squared errors, where the right one is 1.
+constexpr double kTowardUsual = 0.04;
 
 }  // namespace
 
@@ -78,12 +93,12 @@ TEST_CASE("error coverage: normal noise on a ramp") {
     const Coverage c = measure([](int i) { return 0.1 + i % kSide * 0.05; },
                                [](int, Random& r) { return 1 + 0.1 * normal(r); });
     CHECK(c.rmse >= kLeast);
-    CHECK(c.rmse <= kMost);
     CHECK(c.relmse >= kLeast);
     CHECK(c.rmse_reliable == kPictures);
     CHECK(c.relmse_reliable == kPictures);
-    CHECK(c.rmse_ratio == doctest::Approx(1).epsilon(0.01));
-    CHECK(c.relmse_ratio == doctest::Approx(1).epsilon(0.02));
+    CHECK(c.rmse_ratio <= 1.005);
+    CHECK(c.rmse_ratio >= 1 - kTowardUsual);
+    CHECK(c.relmse_ratio == doctest::Approx(1).epsilon(2 * kTowardUsual));
 }
 
 TEST_CASE("error coverage: skewed noise, as light makes it") {
@@ -93,12 +108,11 @@ TEST_CASE("error coverage: skewed noise, as light makes it") {
     const Coverage c = measure([](int i) { return i / kSide % 8 < 4 ? 0.2 : 1.0; },
                                [&](int, Random& r) { return std::exp(s * normal(r) - 0.5 * s2); });
     CHECK(c.rmse >= kLeast);
-    CHECK(c.rmse <= kMost);
     CHECK(c.relmse >= kLeast);
     CHECK(c.rmse_reliable >= 0.95 * kPictures);
     CHECK(c.relmse_reliable >= 0.95 * kPictures);
-    CHECK(c.rmse_ratio == doctest::Approx(1).epsilon(0.02));
-    CHECK(c.relmse_ratio == doctest::Approx(1).epsilon(0.06));  // the bias of the geometric mean
+    CHECK(c.rmse_ratio == doctest::Approx(1).epsilon(kTowardUsual));
+    CHECK(c.relmse_ratio == doctest::Approx(1).epsilon(2 * kTowardUsual));
 }
 
 TEST_CASE("error coverage: rare events do not give false assurance") {

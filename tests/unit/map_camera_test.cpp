@@ -26,7 +26,9 @@ Camera map_camera(Projection projection, int width, int height) {
 // Directions of the rays through points of the film, all in the block at column x.
 RayPacket rays_of(const Camera& camera, int x, const SamplePairs& film) {
     RayPacket rays;
-    camera.rays(film, {}, x, rays);
+    int columns[kLanes];
+    for (int i = 0; i < kLanes; ++i) columns[i] = x + i % 4;
+    camera.rays(film, {}, columns, rays);
     return rays;
 }
 
