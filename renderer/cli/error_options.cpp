@@ -19,7 +19,7 @@ void ErrorOptions::add_to(Command& command) {
             });
     command
         .flag("--no-error-estimate", none,
-              "Do not say how wrong the picture is: 144 bytes a pixel less; the same picture")
+              "Do not say how wrong the picture is: 146 bytes a pixel less; the same picture")
         .excludes(target);
 }
 

@@ -111,7 +111,7 @@ constexpr PassInfo kReady[] = {
     data("variance", "RGB", S::variance,
          "of beauty's mean, as if its samples were independent: as a rule too much"),
     data("standard_error", "RGB", S::standard_error,
-         "of beauty, from four independent replicates of it: right on the mean, rough in each "
+         "of beauty, from four runs of its samples: right on the mean, rough in each "
          "pixel"),
 };
 
