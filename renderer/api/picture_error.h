@@ -14,6 +14,17 @@ struct Interval {
     bool reliable = false;
 };
 
+/// Paths of one kind, from one light, by way of the same materials, and what they make of the
+/// error.
+struct ErrorCause {
+    std::string paths;    // their kind
+    std::string light;    // its name, or its group's; "" if it has none
+    std::string seen;     // material that the camera sees; "": none
+    std::string through;  // material next to the light, of paths with several vertices
+    double share = 0;     // of the variance; all shares add up to 1, some may be below 0
+    std::string remedy;   // what helps
+};
+
 /// Of a layer, against what infinitely many samples would give; over pixels and channels.
 struct ErrorEstimate {
     bool asked = false;                 // false: nobody wanted to know
@@ -25,6 +36,7 @@ struct ErrorEstimate {
     Interval worst_tile;                // the rmse there
     double largest_share = 0;           // of the squared error, in the one noisiest pixel
     std::vector<std::string> cautions;  // why something is not reliable
+    std::vector<ErrorCause> causes;     // largest first; of what is not reliable, or if asked for
 };
 
 /// What a picture's error is to come down to: the upper end of its interval, reliably.

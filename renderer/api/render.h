@@ -133,6 +133,7 @@ struct RenderSettings {
     std::optional<ErrorTarget>
         target;                  // end when it is reached, if spp and time_s are not used up before
     bool error_estimate = true;  // say how wrong the picture is; the samples do not depend on it
+    bool error_causes = false;   // and what makes it so, also where the estimate is reliable
     std::function<void(const ErrorPoint&)> on_error;  // called between passes
     const std::atomic<bool>* cancel = nullptr;
     std::function<void(const Progress&)> progress;  // called from one thread at a time

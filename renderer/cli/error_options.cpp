@@ -17,10 +17,15 @@ void ErrorOptions::add_to(Command& command) {
                            ? std::string()
                            : t + " is no error above 0, as 0.01, relmse=0.01 or rmse=0.002";
             });
+    const Option by_cause =
+        command.flag("--error-causes", causes,
+                     "Say which paths, lights and materials make the error; without it only of "
+                     "an estimate that is not reliable");
     command
         .flag("--no-error-estimate", none,
               "Do not say how wrong the picture is: 146 bytes a pixel less; the same picture")
-        .excludes(target);
+        .excludes(target)
+        .excludes(by_cause);
 }
 
 std::optional<ErrorTarget> ErrorOptions::target() const {

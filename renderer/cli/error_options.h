@@ -1,5 +1,5 @@
 #pragma once
-// --error and --no-error-estimate.
+// --error, --error-causes and --no-error-estimate.
 
 #include <optional>
 #include <string>
@@ -11,7 +11,7 @@ namespace tessera {
 
 struct ErrorOptions {
     std::string text;  // of --error
-    bool none = false;
+    bool none = false, causes = false;
 
     void add_to(Command& command);
     std::optional<ErrorTarget> target() const;

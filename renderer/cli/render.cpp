@@ -108,6 +108,7 @@ void say_what_was_rendered(const Statistics& s) {
                          before, s.render_s, per_second(s.samples), per_second(s.rays.total()),
                          s.threads));
     if (s.error.asked) log_info("error    " + to_text(s.error));
+    say_causes(s.error.causes);
     if (s.error_target && !s.error_reached)
         log_warning("the error that --error asks for was not reached: " + why_not_reached(s));
     if (s.checkpoints + s.checkpoints_failed > 0)
@@ -179,6 +180,7 @@ RenderResult render_with_progress(const Scene& scene, const RenderOptions& o, do
     settings.time_s = time_s;
     settings.deep = !o.deep.empty();
     settings.error_estimate = !o.error.none;
+    settings.error_causes = o.error.causes;
     settings.target = o.error.target();
     ForecastPrinter forecasts(printer,
                               settings.target || o.time_s <= 0 ? settings.target : kUsualTarget);

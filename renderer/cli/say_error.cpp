@@ -1,6 +1,10 @@
 #include "renderer/cli/say_error.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
+
+#include "renderer/core/log.h"
 
 namespace tessera {
 namespace {
@@ -27,8 +31,25 @@ std::string to_text(const ErrorEstimate& e) {
     return text;
 }
 
+std::string to_text(const ErrorCause& c) {
+    const auto quoted = [](const char* before, const std::string& name) {
+        return name.empty() ? std::string() : fmt::format(" {} '{}'", before, name);
+    };
+    return fmt::format("{:.0f} % of the error: {}{}{}{}", 100 * c.share, c.paths,
+                       quoted("of light", c.light), quoted("by way of", c.through),
+                       quoted("on", c.seen));
+}
+
 std::string to_text(const ErrorTarget& t) {
     return fmt::format("{} {:.3g}", t.relative ? "relMSE" : "RMSE", t.value);
+}
+
+void say_causes(const std::vector<ErrorCause>& causes) {
+    constexpr double kWorthSaying = 0.1;
+    constexpr std::size_t kMost = 3;
+    for (std::size_t i = 0; i < std::min(causes.size(), kMost); ++i)
+        if (i == 0 || causes[i].share >= kWorthSaying) log_info("cause    " + to_text(causes[i]));
+    if (!causes.empty()) log_info("remedy   " + causes.front().remedy);
 }
 
 std::string why_not_reached(const Statistics& s) {

@@ -30,6 +30,18 @@ ordered_json interval_json(const Interval& i) {
     return {{"value", i.value}, {"low", i.low}, {"high", i.high}, {"reliable", i.reliable}};
 }
 
+ordered_json causes_json(const std::vector<ErrorCause>& causes) {
+    ordered_json out = ordered_json::array();
+    for (const ErrorCause& c : causes)
+        out.push_back({{"paths", c.paths},
+                       {"light", c.light},
+                       {"seen", c.seen},
+                       {"through", c.through},
+                       {"share", c.share},
+                       {"remedy", c.remedy}});
+    return out;
+}
+
 // null where a picture says nothing of its error.
 ordered_json error_json(const ErrorEstimate& e, const std::vector<ErrorPoint>& curve) {
     if (!e.known) return nullptr;
@@ -51,6 +63,7 @@ ordered_json error_json(const ErrorEstimate& e, const std::vector<ErrorPoint>& c
             {"worst_tile", worst},
             {"largest_share", e.largest_share},
             {"cautions", e.cautions},
+            {"causes", causes_json(e.causes)},
             {"curve", points}};
 }
 

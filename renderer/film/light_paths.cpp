@@ -137,6 +137,14 @@ LightPaths::LightPaths(const Passes& passes, std::vector<LightTag> tags, const S
     first_.push_back(static_cast<std::uint32_t>(taken_.size()));
 }
 
+void LightPaths::split_by_tag() {
+    for (std::size_t i = 0; i + 1 < first_.size(); ++i) {
+        for (std::uint32_t k = first_[i]; k < first_[i + 1]; ++k)
+            taken_[k] = static_cast<std::uint16_t>(taken_[k] * tags_ + i % tags_);
+    }
+    passes_ *= static_cast<int>(tags_);
+}
+
 bool LightPaths::is_taken(int pass) const {
     return std::find(taken_.begin(), taken_.end(), pass) != taken_.end();
 }

@@ -20,7 +20,11 @@ public:
     /// passes: those of light_paths are numbered in their order. Throws Error as choose_passes.
     LightPaths(const Passes& passes, std::vector<LightTag> tags, const SourceLoc& loc);
 
+    /// Every pass apart by the light's tag: number pass * tags() + tag.
+    void split_by_tag();
+
     int passes() const noexcept { return passes_; }
+    int tags() const noexcept { return static_cast<int>(tags_); }
     int states() const noexcept { return static_cast<int>(after_.size()) / kLobeEvents; }
     /// After the camera.
     State start() const noexcept { return start_; }

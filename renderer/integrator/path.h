@@ -193,6 +193,7 @@ private:
         make_shade_input<F>(scene_, program, hit_[i], cone_width_[i], d, s, shade_in_[i]);
         if constexpr (F.textures) shade_in_[i].seed = seeds_[i];
         if (depth == 0) note_first_hit(i, s);
+        if (passes_) passes_->meet(i, s.material);
         if constexpr (kMedia<F>) {
             if (program && program->facts().glass && meet_glass(i, *program)) return;
         }

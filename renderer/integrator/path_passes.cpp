@@ -52,6 +52,10 @@ PathPasses::PathPasses(const Scene& scene, PassSamples& out)
     }
 }
 
+PathPasses::PathPasses(const Scene& scene, const LightPaths& paths, PassSamples& out,
+                       std::vector<Contribution>& into)
+    : scene_(scene), paths_(paths), out_(out), into_(&into) {}
+
 void PathPasses::start(LaneMask lanes) noexcept {
     out_.clear();
     seen_.clear();
@@ -60,6 +64,8 @@ void PathPasses::start(LaneMask lanes) noexcept {
         states_[i].clear();
         waiting_[i].clear();
         scattered_[i] = false;
+        met_[i] = kNone;
+        chain_[i] = {};
         add_branch(states_[i], paths_.start(), Color(1.0f));
     }
 }
@@ -84,8 +90,13 @@ void PathPasses::add_branch(Branches& to, LightPaths::State state, Color share) 
 void PathPasses::scatter(int lane, LobeEvent event) noexcept {
     next_.clear();
     for (const Branch& b : states_[lane]) add_branch(next_, paths_.after(b.state, event), b.share);
+    go_on(lane);
+}
+
+void PathPasses::go_on(int lane) noexcept {
     states_[lane].swap(next_);
     scattered_[lane] = true;
+    chain_[lane] = chain_[lane].with(met_[lane]);
 }
 
 void PathPasses::scatter(int lane, const EventColors& shares) noexcept {
@@ -97,15 +108,16 @@ void PathPasses::scatter(int lane, const EventColors& shares) noexcept {
             add_branch(next_, paths_.after(b.state, static_cast<LobeEvent>(e)),
                        b.share * part.of[e]);
     }
-    states_[lane].swap(next_);
-    scattered_[lane] = true;
+    go_on(lane);
 }
 
 void PathPasses::end(int lane, LightType type, int tag, Color light) noexcept {
     if (type == LightType::surroundings && !scattered_[lane]) type = LightType::background;
+    const Chain& chain = chain_[lane];
+    const Chain by = chain.begun ? chain : chain.with(met_[lane]);
     for (const Branch& b : states_[lane]) {
         for (const std::uint16_t pass : paths_.taking(b.state, type, tag))
-            add(pass, lane, light * b.share);
+            add(pass, lane, light * b.share, by);
     }
 }
 
@@ -123,6 +135,7 @@ void PathPasses::wait(int lane, LightPaths::State state, LightLabel light, Color
 
 void PathPasses::aim(int lane, const EventColors& shares, LightLabel light) noexcept {
     waiting_[lane].clear();
+    asked_by_[lane] = chain_[lane].with(met_[lane]);
     const EventColors part = normalised(shares);
     for (int e = 0; e < kLobeEvents; ++e) {
         if (is_nothing(part.of[e])) continue;
@@ -135,6 +148,7 @@ void PathPasses::aim(int lane, const EventColors& shares, LightLabel light) noex
 
 void PathPasses::aim_unscattered(int lane, LightLabel light) noexcept {
     waiting_[lane].clear();
+    asked_by_[lane] = chain_[lane].with(met_[lane]);
     for (const Branch& b : states_[lane]) wait(lane, b.state, light, b.share);
 }
 

@@ -22,15 +22,30 @@ class PathPasses final : public EscapeSink {
 public:
     PathPasses(const Scene& scene, PassSamples& out);
 
+    /// Light that reached the camera, by the pass that takes it and the materials that sent it on.
+    struct Contribution {
+        int lane = 0;
+        std::uint16_t pass = 0;
+        int seen = kNone;  // the material before the camera
+        int last = kNone;  // and the one next to the light, if it is another vertex
+        Color light;
+    };
+    static constexpr int kNone = -1;
+    /// Of other expressions than the scene's: hands out contributions and keeps no sums.
+    PathPasses(const Scene& scene, const LightPaths& paths, PassSamples& out,
+               std::vector<Contribution>& into);
+
     /// What the passes need of the path beyond states.
     bool wants_uv() const noexcept { return wants_uv_; }
     bool wants_ao() const noexcept { return wants_ao_; }
     bool wants_shadow() const noexcept { return wants_shadow_; }
     bool wants_albedos() const noexcept { return !out_.event_albedos.empty(); }
-    bool wants_light() const noexcept { return !out_.light.empty(); }
+    bool wants_light() const noexcept { return into_ || !out_.light.empty(); }
     bool follows_light() const noexcept { return wants_light() || wants_shadow_; }
 
     void start(LaneMask lanes) noexcept;
+    /// The path has come to a surface.
+    void meet(int lane, int material) noexcept { met_[lane] = material; }
     FirstHit& first(int lane) noexcept { return out_.first[lane]; }
     void albedos(int lane, const EventColors& albedos) noexcept;
 
@@ -48,7 +63,7 @@ public:
     void aim(int lane, const EventColors& shares, LightLabel light) noexcept;
     void aim_unscattered(int lane, LightLabel light) noexcept;
     void lit(int lane, Color light) noexcept {
-        for (const Waiting& w : waiting_[lane]) add(w.pass, lane, light * w.share);
+        for (const Waiting& w : waiting_[lane]) add(w.pass, lane, light * w.share, asked_by_[lane]);
     }
 
     /// Gathers what escaping rays see; escaped() weighs it by their throughput.
@@ -79,9 +94,19 @@ private:
         Color radiance;
     };
     using Branches = std::vector<Branch>;
+    // Materials that have sent the path on.
+    struct Chain {
+        int first = kNone, last = kNone;
+        bool begun = false;
+        Chain with(int material) const noexcept {
+            return begun ? Chain{first, material, true} : Chain{material, kNone, true};
+        }
+    };
 
+    void go_on(int lane) noexcept;
     static void add_branch(Branches& to, LightPaths::State state, Color share);
-    void add(std::uint16_t pass, int lane, Color c) noexcept {
+    void add(std::uint16_t pass, int lane, Color c, const Chain& by) noexcept {
+        if (into_) return into_->push_back({lane, pass, by.first, by.last, c});
         out_.light[static_cast<std::size_t>(pass) * kLanes + static_cast<std::size_t>(lane)] += c;
     }
     void wait(int lane, LightPaths::State state, LightLabel light, Color share);
@@ -95,6 +120,9 @@ private:
     std::vector<Seen> seen_;
     Color unblocked_[kLanes];
     bool scattered_[kLanes];
+    std::vector<Contribution>* into_ = nullptr;
+    int met_[kLanes];
+    Chain chain_[kLanes], asked_by_[kLanes];
 };
 
 }  // namespace tessera

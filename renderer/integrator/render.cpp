@@ -14,6 +14,7 @@
 #include "renderer/film/mattes.h"
 #include "renderer/integrator/block.h"
 #include "renderer/integrator/checkpoints.h"
+#include "renderer/integrator/error_causes.h"
 #include "renderer/integrator/error_watch.h"
 #include "renderer/integrator/pass_plan.h"
 #include "renderer/integrator/path_passes.h"
@@ -308,6 +309,8 @@ private:
         s.checkpoint_every_s = settings_.checkpoint.empty() ? 0 : checkpoints_.every_s();
         s.render_s = seconds_since(start_);
         s.error = error_.latest();
+        if (!within && causes_wanted(s.error))
+            s.error.causes = find_causes(scene_, film_, settings_.first_sample, workers_);
         s.error_curve = error_.curve();
         s.error_target = settings_.target;
         s.error_reached = error_.reached();
@@ -327,6 +330,10 @@ private:
         if (film_.deep()) note_crowds(*film_.deep(), s.notes);
         if (film_.passes().empty()) s.left_out.push_back({"passes", "only beauty was asked for"});
         return r;
+    }
+
+    bool causes_wanted(const ErrorEstimate& e) const {
+        return e.known && (settings_.error_causes || !e.rmse.reliable || !e.relmse.reliable);
     }
 
     DeepImage deep_image() const {

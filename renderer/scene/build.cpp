@@ -127,6 +127,7 @@ private:
             MaterialDesc m = remapped(desc_.materials[i], remap);
             if (scene_->textures_) forget_missing_shapes(m, *scene_->textures_);
             scene_->programs_.emplace_back(m, curves);
+            scene_->material_names_.push_back(m.name);
             displacements_.push_back(displaced[i] ? Displacement(m) : Displacement());
         }
     }

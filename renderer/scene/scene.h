@@ -27,6 +27,9 @@ public:
     const Camera& camera() const noexcept { return camera_; }
     const LightSet& lights() const noexcept { return lights_; }
     const ShaderProgram& program(int material) const noexcept { return programs_[material]; }
+    const std::string& material_name(int material) const noexcept {
+        return material_names_[static_cast<std::size_t>(material)];
+    }
     /// What a material mirrors in place of the scene; null: nothing.
     const ReflectionMap* reflection_map(int material) const noexcept {
         return reflection_maps_.empty() ? nullptr : reflection_maps_[material].get();
@@ -59,6 +62,7 @@ private:
     friend class SceneBuilder;
     Geometry geometry_;
     std::vector<ShaderProgram> programs_;
+    std::vector<std::string> material_names_;                            // as programs_
     std::vector<std::shared_ptr<const ReflectionMap>> reflection_maps_;  // by material, or none
     std::unique_ptr<ColorSpaces> colors_;
     std::unique_ptr<TextureStore> textures_;
