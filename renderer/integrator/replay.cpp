@@ -15,6 +15,27 @@ namespace {
 
 constexpr int kTilesAtOnce = 64;
 
+// What the error estimate renders a second time.
+void log_probes(BlockJob& job, const PixelWindow& tile, BlockKernel kernel) {
+    const RenderDesc& settings = job.scene->settings();
+    std::vector<ProbeGrid::Pixel> probes;
+    const ProbeGrid grid(tile, settings.seed);
+    grid.each_inside(tile, [&](std::size_t, ProbeGrid::Pixel p) { probes.push_back(p); });
+    BlockSamples samples;
+    Counters counters;
+    for (std::size_t first = 0; first < probes.size(); first += kLanes) {
+        const std::size_t count = std::min<std::size_t>(kLanes, probes.size() - first);
+        job.lanes = kAllLanes >> (kLanes - count);
+        for (std::size_t i = 0; i < count; ++i)
+            aim_lane(job, static_cast<int>(i), probes[first + i].x, probes[first + i].y,
+                     probe_seed(settings.seed));
+        for (int s = 0; s < settings.spp; ++s) {
+            choose_sample(job, static_cast<std::uint32_t>(s));
+            kernel(job, samples, counters);
+        }
+    }
+}
+
 }  // namespace
 
 ReplayTimes time_replay(const Scene& scene, const RenderSettings& settings) {
@@ -48,6 +69,7 @@ ReplayTimes time_replay(const Scene& scene, const RenderSettings& settings) {
                     }
                 }
             }
+            if (settings.error_estimate) log_probes(job, tile, kernel);
         });
         const double cpu = process_cpu_seconds();
         const auto start = std::chrono::steady_clock::now();
