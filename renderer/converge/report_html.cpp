@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "renderer/compare/heat_map.h"
+#include "renderer/converge/html_parts.h"
 #include "renderer/converge/page.h"
 #include "renderer/converge/report.h"
 #include "renderer/converge/text.h"
@@ -11,24 +12,6 @@ namespace tessera {
 namespace {
 
 constexpr int kEnlarged = 480;  // pixels of width, below which the page shows them as squares
-
-std::string swatch(std::size_t colour) {
-    return fmt::format("<span class=\"swatch c{}\"></span>", colour % kPlotColours);
-}
-
-std::string small(const std::string& text) {
-    return text.empty() ? "" : "<small>" + escaped(text) + "</small>";
-}
-
-std::string bounds(const Ranged& r) {
-    return r.bounded ? three_figures(r.low) + " to " + three_figures(r.high) : "";
-}
-
-std::string cell(const Ranged& r, const char* key, const std::string& more = "") {
-    return fmt::format("<td data-key=\"{}\" data-value=\"{}\">{}{}{}</td>", key,
-                       r.known ? fmt::format("{}", r.value) : "",
-                       r.known ? three_figures(r.value) : "–", small(bounds(r)), more);
-}
 
 std::string source_of(const std::string& bytes) {
     const bool png = bytes.starts_with("\x89PNG");
@@ -67,11 +50,11 @@ std::string options(const std::vector<Shown>& shown, std::size_t chosen) {
 }
 
 std::string slider(const ConvergeScene& scene, const std::vector<Shown>& shown) {
-    if (shown.empty()) return "";
+    if (shown.size() < 2) return "";
     const bool maps = std::any_of(shown.begin(), shown.end(),
                                   [](const Shown& s) { return !s.picture->relative.empty(); });
     return fmt::format(
-        R"(<h3>Pictures at equal time</h3>
+        R"page(<h3>Pictures at equal time</h3>
 <figure class="slider"><div class="picks">
 <label>left <select class="run" aria-label="left picture">{0}</select></label>
 <label>right <select class="run" aria-label="right picture">{1}</select></label>
@@ -80,9 +63,9 @@ std::string slider(const ConvergeScene& scene, const std::vector<Shown>& shown) 
 <div class="handle"></div><span class="name left"></span><span class="name right"></span></div>
 <input type="range" min="0" max="100" step="0.1" value="50" aria-label="edge between left and right picture">
 </figure>
-)",
-        options(shown, 0), options(shown, std::min<std::size_t>(1, shown.size() - 1)), scene.width,
-        scene.height, scene.width < kEnlarged ? " enlarged" : "",
+)page",
+        options(shown, 0), options(shown, 1), scene.width, scene.height,
+        scene.width < kEnlarged ? " enlarged" : "",
         maps ? "<option value=\"relative\">relative error</option><option "
                "value=\"flip\">FLIP</option>"
              : "");
@@ -160,72 +143,6 @@ std::string plots(const ConvergeScene& scene, const std::vector<SeriesSummary>& 
         buttons, figures, legend, what);
 }
 
-std::string estimate_cell(const SeriesSummary& s) {
-    return cell(s.estimate[0], "estimate",
-                s.estimate[0].known && !s.reliable ? "<small>unreliable</small>" : "");
-}
-
-std::string row(const ConvergeScene& scene, const SeriesSummary& s, std::size_t colour,
-                const SeriesSummary& first) {
-    const Ranged& e = s.efficiency;
-    const bool same_kind = e.known && first.efficiency.known && s.comparable == first.comparable;
-    std::string ratio;
-    if (same_kind && colour > 0) ratio = three_figures(e.value / first.efficiency.value) + "×";
-    const ConvergeRun& run = scene.runs[s.runs[0]];
-    std::string what = fmt::format("{}, {}", run.integrator, run.kernel);
-    if (!run.build.empty()) what += ", " + run.version;
-    return fmt::format(
-        "<tr data-series=\"{}\"><td>{}{}{}</td><td data-key=\"wall\" "
-        "data-value=\"{}\">{}{}</td><td>{:.6g}</td>{}{}{}{}{}{}{}"
-        "<td>{}</td><td>{} MiB</td></tr>\n",
-        escaped(s.label), swatch(colour), escaped(s.label), small(what), s.wall_s,
-        duration(s.wall_s), s.cpu_s ? small("CPU " + duration(*s.cpu_s)) : "", s.spp,
-        cell(s.truth[0], "relmse"), cell(s.truth[1], "rmse"), cell(s.truth[2], "flip"),
-        estimate_cell(s), cell(s.wall_slope, "slope_wall"), cell(s.spp_slope, "slope_spp"),
-        cell(e, "efficiency", small(ratio)), with_prefix(s.rays_per_s),
-        three_figures(s.memory_peak / (1 << 20)));
-}
-
-Ranged exactly(double v) { return {v, v, v, true, false}; }
-
-std::string table(const ConvergeScene& scene, const std::vector<SeriesSummary>& series) {
-    if (series.empty() && scene.pictures.empty() && scene.history.empty()) return "";
-    std::string rows;
-    for (const HistoryRow& h : scene.history) {
-        std::string ratio;
-        if (!series.empty() && series[0].wall_s > 0)
-            ratio = small(three_figures(h.wall_s / series[0].wall_s) + "× " + series[0].label);
-        rows += fmt::format("<tr class=\"history\"><td>{}</td><td>{}{}</td>{}</tr>\n",
-                            escaped(h.label), duration(h.wall_s), ratio,
-                            "<td>–</td><td>–</td><td>–</td><td>–</td><td>–</td><td>–</td><td>–</td>"
-                            "<td>–</td><td>–</td><td>–</td>");
-    }
-    std::size_t colour = 0;
-    for (const SeriesSummary& s : series) {
-        rows += row(scene, s, colour, series[0]);
-        ++colour;
-    }
-    for (const ForeignPicture& p : scene.pictures) {
-        const TrueError e = p.truth.value_or(TrueError{});
-        rows += fmt::format(
-            "<tr><td>{}{}{}</td><td>{}</td><td>–</td>{}{}{}<td>–</td><td>–</td><td>–</td>{}<td>–</"
-            "td><td>–</td></tr>\n",
-            p.truth ? swatch(colour) : "", escaped(p.label), small(p.file), duration(p.wall_s),
-            cell(p.truth ? exactly(e.relmse) : Ranged{}, "relmse"),
-            cell(p.truth ? exactly(e.rmse) : Ranged{}, "rmse"),
-            cell(p.truth ? exactly(e.flip) : Ranged{}, "flip"),
-            cell(p.truth ? exactly(1 / (e.relmse * p.wall_s)) : Ranged{}, "efficiency"));
-        colour += p.truth ? 1 : 0;
-    }
-    return "<h3>At the end</h3>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" "
-           "aria-label=\"numbers at the end\"><table><thead><tr><th>run</th>"
-           "<th>seconds</th><th>spp</th><th>relMSE</th><th>RMSE</th><th>FLIP</th>"
-           "<th>own estimate<br>of relMSE</th><th>slope<br>by time</th><th>slope<br>by samples</th>"
-           "<th>efficiency<br>1/(relMSE·s)</th><th>rays/s</th><th>memory</th></tr></"
-           "thead><tbody>\n" +
-           rows + "</tbody></table></div>\n";
-}
-
 std::string reference_text(const ConvergeScene& s) {
     if (!s.reference) return "no reference: errors are the renders' own estimates";
     const ConvergeReference& r = *s.reference;
@@ -249,8 +166,15 @@ std::string section(const ConvergeScene& scene, std::size_t number) {
                                r.seed, escaped(r.failure));
     for (const std::string& note : scene.notes)
         out += "<p class=\"soft\">" + escaped(note) + "</p>\n";
-    return out + table(scene, series) + plots(scene, series) + slider(scene, shown) + sheet(shown) +
-           "</section>\n";
+    return out + results_table(scene, series) + plots(scene, series) + slider(scene, shown) +
+           sheet(shown) + "</section>\n";
+}
+
+std::string contents(const ConvergeReport& report) {
+    std::string out = "<nav aria-label=\"scenes\">";
+    for (std::size_t i = 0; i < report.scenes.size(); ++i)
+        out += fmt::format("<a href=\"#s{}\">{}</a> ", i, escaped(report.scenes[i].name));
+    return out + "</nav>\n";
 }
 
 std::string provenance(const ConvergeReport& r) {
@@ -297,6 +221,7 @@ std::string report_html(const ConvergeReport& report) {
         out += "<p class=\"failed\">Stopped by a signal: the report holds what there was.</p>\n";
     for (const std::string& f : report.failures)
         out += "<p class=\"failed\">" + escaped(f) + "</p>\n";
+    if (report.scenes.size() > 1) out += contents(report);
     for (std::size_t i = 0; i < report.scenes.size(); ++i) out += section(report.scenes[i], i);
     out += "</main>\n<footer>" + std::string(kMethod) + provenance(report) + "</footer>\n";
     out += "<script type=\"application/json\" id=\"report\">" + inside_script(report_json(report)) +

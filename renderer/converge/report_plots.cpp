@@ -37,9 +37,12 @@ PlotSeries plot_series(const ConvergeScene& scene, const SeriesSummary& s, Error
         if (of_first) own = estimate_at(*of_first, kind);
         const double x = axis == PlotAxis::wall ? p.wall_s : p.spp;
         out.points.push_back({x, p.error.value, p.error.low, p.error.high, tip(s, p, own, kind)});
-        if (own)
-            out.band.push_back({axis == PlotAxis::wall ? of_first->wall_s : p.spp, own->low,
-                                own->high, own->reliable});
+    }
+    for (const ConvergePoint& p : runs[0]->curve) {
+        const std::optional<Interval> own = estimate_at(p, kind);
+        if (!own) continue;
+        const double x = axis == PlotAxis::wall ? p.wall_s : p.spp;
+        out.band.push_back({x, own->low, own->high, own->reliable});
     }
     return out;
 }

@@ -148,8 +148,12 @@ std::vector<MeanPoint> mean_curve(const std::vector<const ConvergeRun*>& runs, E
     }
     std::vector<MeanPoint> out;
     if (lines.empty()) return out;
-    for (const auto& [spp, unused] : lines[0].error) {
-        if (spp < least || spp > most) continue;
+    std::vector<double> grid;
+    for (const auto& [spp, unused] : lines[0].error)
+        if (spp >= least && spp <= most) grid.push_back(spp);
+    // With a time to fill, seeds end at different samples.
+    if (least <= most && (grid.empty() || grid.back() < most)) grid.push_back(most);
+    for (const double spp : grid) {
         std::vector<double> errors;
         double wall = 0;
         for (const Lines& l : lines) {

@@ -28,8 +28,8 @@ struct MeanPoint {
     Ranged error;
 };
 
-/// At the samples of the first run; between two points of another one its error is taken from the
-/// straight line in logarithms.
+/// At the samples of the first run, and where the first of them ended; between two points of
+/// another one its error is taken from the straight line in logarithms.
 std::vector<MeanPoint> mean_curve(const std::vector<const ConvergeRun*>& runs, ErrorKind kind);
 
 struct SeriesSummary {

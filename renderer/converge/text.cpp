@@ -70,7 +70,8 @@ std::string base64(std::string_view bytes) {
 
 std::string three_figures(double v) {
     if (!std::isfinite(v)) return "-";
-    if (v != 0 && (std::fabs(v) < 1e-4 || std::fabs(v) >= 1e6)) return fmt::format("{:.2e}", v);
+    if (v == 0) return "0";
+    if ((std::fabs(v) < 1e-4 || std::fabs(v) >= 1e6)) return fmt::format("{:.2e}", v);
     if (std::fabs(v) >= 100) return fmt::format("{:.0f}", v);
     return fmt::format("{:#.3g}", v);
 }
