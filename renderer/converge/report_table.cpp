@@ -54,8 +54,11 @@ public:
 private:
     void add(const HistoryRow& h) {
         std::string ratio;
-        if (!series_.empty() && series_[0].wall_s > 0)
-            ratio = fmt::format("{:.3g} times {}", h.wall_s / series_[0].wall_s, series_[0].label);
+        if (!series_.empty()) {
+            const ConvergePoint& p = scene_.runs[series_[0].runs[0]].curve.front();
+            ratio = fmt::format("{:.3g} times {} spp of {}", h.wall_s / p.wall_s, p.spp,
+                                series_[0].label);
+        }
         rows_ += "<tr>" + cell(escaped(h.label)) + cell(duration(h.wall_s) + small(ratio));
         for (int i = 0; i < 6 + (truth_ ? 3 : 0); ++i) rows_ += nothing();
         rows_ += "</tr>\n";
