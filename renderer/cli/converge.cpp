@@ -58,7 +58,7 @@ void write_plots(const ConvergeScene& scene, const std::string& folder) {
             const Plot plot = make_plot(scene, series, kind, axis);
             if (plot.series.empty()) continue;
             const std::string name =
-                fmt::format("{}/{}-{}-{}", folder, file_name_of(scene.name), key_of(kind),
+                fmt::format("{}/{}-{}-{}", folder, scene.file_name, key_of(kind),
                             axis == PlotAxis::wall ? "wall" : "spp");
             const std::string svg = draw_plot(plot, PlotUse::file);
             write_text_file(svg, name + ".svg");

@@ -58,19 +58,15 @@ Measured measure(const std::string& picture, const std::string& reference, int t
 }
 
 std::string as_png(const std::string& picture, const std::string& folder) {
-    ComparedPicture read = read_compared(picture);
-    if (read.encoded) {
-        for (Layer& l : read.image.layers)
-            if (title_of(l) == "beauty") to_light(read)(l.pixels);
-    }
+    const ComparedPicture read = read_compared(picture);
     const std::string path = folder + "/picture.png";
     write_preview(read.image, path);
     return take_bytes(path);
 }
 
-std::pair<int, int> frame_of(const std::string& picture) {
+PictureFrame frame_of(const std::string& picture) {
     const ComparedPicture read = read_compared(picture);
-    return {read.image.width, read.image.height};
+    return {read.image.width, read.image.height, read.encoded};
 }
 
 }  // namespace tessera

@@ -20,7 +20,11 @@ Measured measure(const std::string& picture, const std::string& reference, int t
 /// A picture as PNG, for the eye. folder: for a file on the way. Throws Error(scene).
 std::string as_png(const std::string& picture, const std::string& folder);
 
-/// Width and height of a picture's frame. Throws Error(scene).
-std::pair<int, int> frame_of(const std::string& picture);
+struct PictureFrame {
+    int width = 0, height = 0;
+    bool encoded = false;  // integers as a display takes them
+};
+/// Throws Error(scene).
+PictureFrame frame_of(const std::string& picture);
 
 }  // namespace tessera

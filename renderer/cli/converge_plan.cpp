@@ -54,6 +54,8 @@ std::vector<PlannedScene> scenes_of(const std::vector<std::string>& texts) {
             found = out.end() - 1;
             found->name = name;
         }
+        if (std::find(found->files.begin(), found->files.end(), file) != found->files.end())
+            usage(text + ": the file is there twice");
         found->files.push_back(file);
     }
     return out;
@@ -77,6 +79,17 @@ std::pair<PlannedScene*, std::string> addressed(std::vector<PlannedScene>& scene
         if (text.starts_with(s.name + mark)) return {&s, text.substr(s.name.size() + 1)};
     if (scenes.size() == 1) return {&scenes[0], text};
     usage(fmt::format("{}: of which scene? write {}{}{}", option, scenes[0].name, mark, text));
+}
+
+// Unlike that of any scene before it.
+void name_file(PlannedScene& scene, const std::vector<PlannedScene>& scenes) {
+    const std::string wanted = file_name_of(scene.name);
+    scene.file_name = wanted;
+    const auto taken = [&](const PlannedScene& other) {
+        return &other < &scene && other.file_name == scene.file_name;
+    };
+    for (int n = 2; std::any_of(scenes.begin(), scenes.end(), taken); ++n)
+        scene.file_name = fmt::format("{}-{}", wanted, n);
 }
 
 void add_references(const ConvergeOptions& o, std::vector<PlannedScene>& scenes) {
@@ -115,9 +128,18 @@ std::vector<Build> builds_of(const std::vector<std::string>& texts, const std::s
     return out;
 }
 
+// Its stem, or all of it if another file has the same.
+std::string told_apart(const std::string& file, const std::vector<std::string>& files) {
+    const fs::path stem = fs::path(file).stem();
+    const auto alike = std::count_if(files.begin(), files.end(), [&](const std::string& other) {
+        return fs::path(other).stem() == stem;
+    });
+    return alike > 1 ? file : stem.string();
+}
+
 std::string series_of(const Combination& c, const PlannedScene& scene, const ConvergePlan& plan) {
     std::vector<std::string> words;
-    if (scene.files.size() > 1) words.push_back(fs::path(c.scene).stem().string());
+    if (scene.files.size() > 1) words.push_back(told_apart(c.scene, scene.files));
     if (!plan.builds[c.build].label.empty()) words.push_back(plan.builds[c.build].label);
     for (const auto& [key, value] : c.settings) words.push_back(key + "=" + value);
     std::string out;
@@ -165,6 +187,20 @@ void check(const ConvergeOptions& o, const ConvergePlan& plan) {
 }
 
 }  // namespace
+
+std::string file_name_of(const std::string& text) {
+    constexpr std::size_t kMost = 100;
+    std::string out;
+    for (const char c : text.substr(0, kMost)) {
+        const bool fine = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') ||
+                          (c >= 'a' && c <= 'z') || c == '.' || c == '-' || c == '_' || c == '=';
+        if (fine && !(out.empty() && c == '.'))
+            out += c;
+        else if (!out.empty() && out.back() != '_')
+            out += '_';
+    }
+    return out.empty() ? "scene" : out;
+}
 
 Varied parse_vary(const std::string& text) {
     const std::size_t equals = text.find('=');
@@ -233,7 +269,10 @@ ConvergePlan make_plan(const ConvergeOptions& o, const std::string& own) {
         const auto [scene, rest] = addressed(plan.scenes, text, '/', "--history " + text);
         scene->history.push_back(parse_timed(rest, "--history", false));
     }
-    for (PlannedScene& scene : plan.scenes) combine(scene, plan);
+    for (PlannedScene& scene : plan.scenes) {
+        name_file(scene, plan.scenes);
+        combine(scene, plan);
+    }
     return plan;
 }
 

@@ -44,7 +44,7 @@ struct PlannedPicture {
 };
 
 struct PlannedScene {
-    std::string name;
+    std::string name, file_name;
     std::vector<std::string> files;
     std::string reference;  // a picture, or a scene to render; "": there is none
     bool reference_is_scene = false;
@@ -64,6 +64,9 @@ Varied parse_vary(const std::string& text);
 
 /// LABEL=FILE@SECONDS, or LABEL@SECONDS where there is no file. Throws Error(usage).
 PlannedPicture parse_timed(const std::string& text, const std::string& option, bool file);
+
+/// A name that a file may have.
+std::string file_name_of(const std::string& text);
 
 /// Reads no scene. own: this program. Throws Error(usage).
 ConvergePlan make_plan(const ConvergeOptions& options, const std::string& own);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "renderer/api/error.h"
@@ -20,10 +21,14 @@ using nlohmann::json;
 constexpr int kFirstSamples = 4;  // of a program without --passes: the least that has an estimate
 constexpr const char* kLast = "last";
 
+// What is infinite is null in a file.
 std::optional<Interval> interval_of(const json& j) {
     if (!j.is_object()) return std::nullopt;
-    return Interval{j.value("value", 0.0), j.value("low", 0.0), j.value("high", 0.0),
-                    j.value("reliable", false)};
+    const auto number = [&](const char* key) {
+        const json v = j.value(key, json());
+        return v.is_number() ? v.get<double>() : std::numeric_limits<double>::infinity();
+    };
+    return Interval{number("value"), number("low"), number("high"), j.value("reliable", false)};
 }
 
 json beauty_of(const json& statistics) {

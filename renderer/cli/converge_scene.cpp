@@ -47,11 +47,15 @@ void check_varied(const std::string& file, const Varied& v, const ConvergeOption
 
 void check_frame(const std::string& picture, const std::string& option, const PlannedScene& scene,
                  const CheckedScene& checked) {
-    const auto [width, height] = frame_of(picture);
-    if (width == checked.width && height == checked.height) return;
-    throw Error(ExitCode::scene,
-                fmt::format("{}: is {} x {} pixels, scene '{}' is {} x {} ({})", picture, width,
-                            height, scene.name, checked.width, checked.height, option));
+    const PictureFrame frame = frame_of(picture);
+    if (frame.encoded)
+        throw Error(ExitCode::scene, fmt::format("{}: has integers for a display, errors need "
+                                                 "floats of light, as EXR has ({})",
+                                                 picture, option));
+    if (frame.width == checked.width && frame.height == checked.height) return;
+    throw Error(ExitCode::scene, fmt::format("{}: is {} x {} pixels, scene '{}' is {} x {} ({})",
+                                             picture, frame.width, frame.height, scene.name,
+                                             checked.width, checked.height, option));
 }
 
 // Nearest in time, by its logarithm.
@@ -112,29 +116,15 @@ CheckedScene check_scene(const PlannedScene& scene, const ConvergePlan& plan,
     return out;
 }
 
-std::string file_name_of(const std::string& text) {
-    constexpr std::size_t kMost = 100;
-    std::string out;
-    for (const char c : text.substr(0, kMost)) {
-        const bool fine = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') ||
-                          (c >= 'a' && c <= 'z') || c == '.' || c == '-' || c == '_' || c == '=';
-        if (fine && !(out.empty() && c == '.'))
-            out += c;
-        else if (!out.empty() && out.back() != '_')
-            out += '_';
-    }
-    return out.empty() ? "scene" : out;
-}
-
 ConvergeScene SceneRuns::run(const std::string& work, std::vector<std::string>& failures) {
     work_ = work;
     out_.name = scene_.name;
+    out_.file_name = scene_.file_name;
     out_.width = checked_.width, out_.height = checked_.height;
     for (const PlannedPicture& h : scene_.history) out_.history.push_back({h.label, h.wall_s});
     try {
-        out_.reference =
-            obtain_reference(scene_, options_, plan_.builds[0].program,
-                             options_.output + "/references", file_name_of(scene_.name), stop_);
+        out_.reference = obtain_reference(scene_, options_, plan_.builds[0].program,
+                                          options_.output + "/references", scene_.file_name, stop_);
         if (out_.reference) out_.reference->shown = shown(out_.reference->file);
     } catch (const Error& e) {
         failures.push_back(e.what());
@@ -216,7 +206,7 @@ void SceneRuns::measure_run(ConvergeRun& run, const std::vector<std::string>& fi
 void SceneRuns::keep_picture(ConvergeRun& run, const std::string& file, int seed_number) {
     const std::string folder = options_.output + "/pictures";
     fs::create_directories(folder);
-    std::string name = file_name_of(scene_.name + "-" + run.series);
+    std::string name = scene_.file_name + "-" + file_name_of(run.series);
     if (options_.seeds > 1) name += fmt::format("-{}", seed_number + 1);
     for (const ConvergeRun& other : out_.runs)
         if (other.file == folder + "/" + name + ".exr")

@@ -22,9 +22,6 @@ struct CheckedScene {
 CheckedScene check_scene(const PlannedScene& scene, const ConvergePlan& plan,
                          const ConvergeOptions& options);
 
-/// A name that a file may have.
-std::string file_name_of(const std::string& text);
-
 /// Renders and measures; what fails is in the record, and in failures.
 class SceneRuns {
 public:

@@ -72,7 +72,7 @@ struct ConvergeReference {
 };
 
 struct ConvergeScene {
-    std::string name;
+    std::string name, file_name;  // the second as a part of names of files
     int width = 0, height = 0;
     std::optional<ConvergeReference> reference;
     std::vector<ConvergeRun> runs;

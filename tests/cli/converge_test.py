@@ -159,6 +159,9 @@ class References(Converge):
             run, report = self.converge("--spp", "4", option, value, code=SCENE)
             self.assertIn(f"small.exr: is 20 x 10 pixels, scene 'scene' is 48 x 32 ({option})", run.err)
             self.assertEqual(report["scenes"], [])
+        self.expect(0, "render", "scene.toml", "-o", "x.exr", "--preview", "shown.png")
+        run, _ = self.converge("--spp", "4", "--reference", "shown.png", code=SCENE)
+        self.assertIn("shown.png: has integers for a display, errors need floats", run.err)
         run, _ = self.converge("--spp", "4", "--reference", "nowhere.exr", code=SCENE)
         self.assertIn("nowhere.exr", run.err)
 
@@ -212,6 +215,15 @@ class Others(Converge):
         (scene,) = report["scenes"]
         self.assertEqual((scene["name"], [s["label"] for s in scene["series"]]), ("both", ["scene", "deep"]))
 
+    def test_names_that_are_alike_as_files_and_files_of_one_name_stay_apart(self):
+        self.write("sub/scene.toml", SCENE_TOML.replace('"triangles.obj"', '"../triangles.obj"'))
+        scenes = ("a/b=scene.toml", "a b=scene.toml", "a b=sub/scene.toml")
+        _, report = self.converge("--spp", "4", "--allow-external-assets", scenes=scenes)
+        self.assertEqual([s["label"] for s in report["scenes"][1]["series"]], ["scene.toml", "sub/scene.toml"])
+        files = [r["picture"] for s in report["scenes"] for r in s["runs"]]
+        self.assertEqual(len(set(files)), 3, files)
+        self.assertEqual(len(list(self.folder.glob("out/plots/*-relmse-wall.svg"))), 2)
+
     def test_a_name_cannot_break_the_page_or_leave_the_folder(self):
         name = "../</script><b>x"
         _, report = self.converge("--spp", "4", scenes=(f"{name}=scene.toml",))
@@ -251,6 +263,7 @@ class Mistakes(Converge):
         two = ("scene.toml", "b=scene.toml")
         self.refused("of which scene? write scene=", "--spp", "4", "--reference", "r.exr", scenes=two)
         self.refused("no scene has the name 'sce'", "--spp", "4", "--reference", "sce=r.exr", scenes=two)
+        self.refused("the file is there twice", "--spp", "4", scenes=("a=scene.toml", "a=scene.toml"))
         self.refused("of which scene? write scene/", "--spp", "4", "--history", "x@1", scenes=two)
 
     def test_in_a_scene_are_named_with_their_place_and_the_others_go_on(self):
