@@ -140,6 +140,16 @@ TEST_CASE("report: the table's cells carry the numbers of the JSON") {
         CHECK(std::stod(html.substr(at)) == s["error"]["relmse"]["value"].get<double>());
     }
     CHECK(html.find("74 min") != std::string::npos);
+    // The columns stand below their heads.
+    const std::size_t row = html.find("<tr data-series=");
+    const std::string cells = html.substr(row, html.find("</tr>", row) - row);
+    std::size_t head = 0, cell = 0;
+    for (const ErrorKind kind : kErrorKinds) {
+        head = html.find(std::string("<th>") + title_of(kind), head);
+        cell = cells.find(std::string("data-key=\"") + key_of(kind), cell);
+        REQUIRE(head != std::string::npos);
+        REQUIRE(cell != std::string::npos);
+    }
 }
 
 TEST_CASE("report: without a reference there are no columns of true errors") {
