@@ -30,7 +30,7 @@ class Page(TesseraTest):
         cls.maker.write_scene()
         cls.maker.expect(
             0, "converge", "a <scene>=scene.toml", "-o", "out", "--spp", "16", "--reference-spp", "64", "--vary", "max_depth=1,4",
-            "--seeds", "2", "--history", "a <scene>/then@4440", "b=scene.toml", timeout=60,
+            "--seeds", "2", "--history", "a <scene>/then@4440", "b=scene.toml", timeout=200,
         )  # fmt: skip
         cls.file = cls.maker.folder / "out" / "report.html"
         cls.report = json.loads((cls.maker.folder / "out" / "report.json").read_text())
