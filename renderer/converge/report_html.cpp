@@ -55,11 +55,11 @@ std::string slider(const ConvergeScene& scene, const std::vector<Shown>& shown) 
                                   [](const Shown& s) { return !s.picture->relative.empty(); });
     return fmt::format(
         R"page(<h3>Pictures at equal time</h3>
-<figure class="slider"><div class="picks">
+<figure class="slider" style="max-width:max(300px, calc(72vh * {2} / {3}))"><div class="picks">
 <label>left <select class="run" aria-label="left picture">{0}</select></label>
 <label>right <select class="run" aria-label="right picture">{1}</select></label>
 <label>show <select class="what" aria-label="what is shown"><option value="picture">picture</option>{5}</select></label>
-</div><div class="stage{4}" style="aspect-ratio:{2}/{3};max-width:calc(84vh * {2} / {3})"><img class="on-right" alt=""><img class="on-left" alt="">
+</div><div class="stage{4}" style="aspect-ratio:{2}/{3}"><img class="on-right" alt=""><img class="on-left" alt="">
 <div class="handle"></div><span class="name left"></span><span class="name right"></span></div>
 <input type="range" min="0" max="100" step="0.1" value="50" aria-label="edge between left and right picture">
 </figure>
@@ -147,8 +147,7 @@ std::string reference_text(const ConvergeScene& s) {
     if (!s.reference) return "no reference: errors are the renders' own estimates";
     const ConvergeReference& r = *s.reference;
     if (r.scene.empty()) return "reference " + r.file;
-    std::string out =
-        fmt::format("reference {} of {}, {} spp, seed {}", r.file, r.scene, r.spp, r.seed);
+    std::string out = fmt::format("reference of {}, {} spp, seed {}", r.scene, r.spp, r.seed);
     if (r.relmse) out += ", its own relMSE " + three_figures(r.relmse->value);
     return out;
 }

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cmath>
 
 #include "renderer/converge/html_parts.h"
 #include "renderer/converge/plot.h"
@@ -26,6 +26,13 @@ std::string cell(const Ranged& r, const char* key, const std::string& more = "")
         r.bounded ? three_figures(r.low) + " to " + three_figures(r.high) : "";
     return fmt::format("<td data-key=\"{}\" data-value=\"{}\">{}{}{}</td>", key, r.value,
                        three_figures(r.value), small(bounds), small(more));
+}
+
+// To three figures: "9650", "0.154".
+std::string rounded(double v) {
+    if (!(v >= 1000 && v < 1e9)) return fmt::format("{:.3g}", v);
+    const double unit = std::pow(10.0, std::floor(std::log10(v)) - 2);
+    return fmt::format("{:.0f}", std::round(v / unit) * unit);
 }
 
 Ranged exactly(double v) { return {v, v, v, true, false}; }
@@ -56,7 +63,7 @@ private:
         std::string ratio;
         if (!series_.empty()) {
             const ConvergePoint& p = scene_.runs[series_[0].runs[0]].curve.front();
-            ratio = fmt::format("{:.3g} times {} spp of {}", h.wall_s / p.wall_s, p.spp,
+            ratio = fmt::format("{} times {} spp of {}", rounded(h.wall_s / p.wall_s), p.spp,
                                 series_[0].label);
         }
         rows_ += "<tr>" + cell(escaped(h.label)) + cell(duration(h.wall_s) + small(ratio));
@@ -72,9 +79,10 @@ private:
         const bool comparable = s.efficiency.known && first.efficiency.known &&
                                 s.comparable == first.comparable && &s != &first;
         const std::string ratio =
-            comparable ? fmt::format("{:.3g} times {}", s.efficiency.value / first.efficiency.value,
-                                     first.label)
-                       : "";
+            comparable
+                ? fmt::format("{} times {}", rounded(s.efficiency.value / first.efficiency.value),
+                              first.label)
+                : "";
         rows_ += fmt::format(
             "<tr data-series=\"{0}\">{1}<td data-key=\"wall\" "
             "data-value=\"{2}\">{3}{4}</td>{5}",

@@ -121,8 +121,10 @@ class Chromium:
             self.call("Input.dispatchTouchEvent", type=kind, touchPoints=[{"x": point[0], "y": point[1]}])
         self.call("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
 
-    def screenshot(self, path):
-        data = self.call("Page.captureScreenshot", format="png")["data"]
+    def screenshot(self, path, clip=None):
+        """clip: x, y, width, height, scale, of the page; without it what is in view."""
+        more = {"clip": clip, "captureBeyondViewport": True} if clip else {}
+        data = self.call("Page.captureScreenshot", format="png", **more)["data"]
         pathlib.Path(path).write_bytes(base64.b64decode(data))
 
     def complaints(self):
@@ -142,6 +144,12 @@ class Chromium:
     def close(self):
         if self.process.returncode is not None:
             return
+        try:  # it takes its own processes with it, if it still answers
+            self.session, self.deadline = None, time.monotonic() + 5
+            self.call("Browser.close")
+            self.process.wait(timeout=5)
+        except (OSError, RuntimeError, TimeoutError, subprocess.TimeoutExpired):
+            pass
         try:
             os.killpg(self.process.pid, signal.SIGKILL)
         except ProcessLookupError:
