@@ -275,6 +275,7 @@ int run_render(RenderOptions options, const std::string& command) {
     ProgressPrinter printer(progress_style(options));
     const auto display = open_display(scene->film(), options, printer);
     const auto describe = [&](RenderResult& r) {
+        r.stats.load_s = load_s;
         describe_picture(r.image, scene->hash(), r.stats, command, files.format);
     };
     std::optional<PassFiles> passes;

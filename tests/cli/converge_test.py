@@ -9,7 +9,8 @@ import subprocess
 import time
 import unittest
 
-from support import PARTIAL, PROGRAM, SCENE, SCENE_TOML, SLOWDOWN, SOURCE, USAGE, TesseraTest, command
+from exr import Exr
+from support import OUTPUT, PARTIAL, PROGRAM, SCENE, SCENE_TOML, SLOWDOWN, SOURCE, USAGE, TesseraTest, command
 
 try:
     import jsonschema
@@ -131,6 +132,28 @@ class Curves(Converge):
         self.assertLess(scene["series"][0]["slope"]["spp"]["value"], -0.5)
         self.assertEqual(self.rows()[0]["relmse"], "")
         self.assertFalse((self.folder / "out/plots/scene-flip-wall.svg").exists())
+
+
+class Passes(Converge):
+    """render --passes"""
+
+    def test_each_pass_is_a_picture_with_its_statistics(self):
+        whole = self.render("--spp", "6", "--float", "--passes", "p/q", "--seed", "3")
+        self.assertEqual(
+            [f for f in self.files() if f.startswith("p/")],
+            [f"p/q/{n:06}.{kind}" for n in (1, 2, 4, 6) for kind in ("exr", "json")],
+        )
+        self.assert_same_bits(Exr(self.folder / "p/q/000006.exr"), whole)
+        self.assert_same_bits(Exr(self.folder / "p/q/000004.exr"), self.render("--spp", "4", "--float", "--seed", "3"))
+        statistics = json.loads((self.folder / "p/q/000004.json").read_text())
+        self.assertEqual((statistics["spp"], statistics["samples"], statistics["seed"]), (4, 4 * 48 * 32, 3))
+        self.assertGreater(statistics["seconds"]["load"], 0)
+
+    def test_a_folder_that_cannot_be_is_found_out_before_the_render(self):
+        self.write("file", "")
+        run = self.expect(OUTPUT, "render", "scene.toml", "-o", "x.exr", "--passes", "file/p")
+        self.assertIn("file/p: cannot write", run.err)
+        self.assertFalse((self.folder / "x.exr").exists())
 
 
 class References(Converge):
@@ -280,7 +303,7 @@ class Mistakes(Converge):
 
     def test_a_folder_that_cannot_be_is_an_output_error(self):
         self.write("file", "")
-        run = self.expect(4, "converge", "scene.toml", "--spp", "4", "-o", "file/out")
+        run = self.expect(OUTPUT, "converge", "scene.toml", "--spp", "4", "-o", "file/out")
         self.assertIn("file/out", run.err)
 
 
