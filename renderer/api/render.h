@@ -135,6 +135,9 @@ struct RenderSettings {
     bool error_estimate = true;  // say how wrong the picture is; the samples do not depend on it
     bool error_causes = false;   // and what makes it so, also where the estimate is reliable
     std::function<void(const ErrorPoint&)> on_error;  // called between passes
+    /// The picture after each pass; passes then end at powers of two. What this takes is in none of
+    /// the times, and no part of time_s.
+    std::function<void(RenderResult&&)> on_pass;
     const std::atomic<bool>* cancel = nullptr;
     std::function<void(const Progress&)> progress;  // called from one thread at a time
     /// A tile of a pass is finished: its pixels so far, to be copied. Called by several at a time.

@@ -22,6 +22,7 @@ void add_version(Command app, CommandLine& line);
 void add_exrcheck(Command app, CommandLine& line);
 void add_flatten(Command app, CommandLine& line);
 void add_compare(Command app, CommandLine& line);
+void add_converge(Command app, CommandLine& line);
 void add_schema(Command app, CommandLine& line);
 
 }  // namespace tessera

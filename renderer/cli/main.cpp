@@ -93,6 +93,7 @@ int main(int argc, char** argv) {
     tessera::add_exrcheck(app, line);
     tessera::add_flatten(app, line);
     tessera::add_compare(app, line);
+    tessera::add_converge(app, line);
     tessera::add_version(app, line);
     tessera::add_schema(app, line);
 

@@ -16,6 +16,7 @@
 #include "renderer/cli/long_render.h"
 #include "renderer/cli/output_check.h"
 #include "renderer/cli/output_options.h"
+#include "renderer/cli/pass_files.h"
 #include "renderer/cli/picture_files.h"
 #include "renderer/cli/progress.h"
 #include "renderer/cli/say_error.h"
@@ -27,7 +28,6 @@
 #include "renderer/core/log.h"
 #include "renderer/film/film_file.h"
 #include "renderer/film/pass_docs.h"
-#include "renderer/image/atomic_file.h"
 #include "renderer/scene/scene.h"
 
 namespace tessera {
@@ -39,7 +39,7 @@ struct RenderOptions {
     SceneOptions scene;
     LongRenderOptions runs;
     OutputOptions out;
-    std::string output, preview, view, stats, display, deep;
+    std::string output, preview, view, stats, display, deep, passes;
     std::string progress = "auto", crypto_manifest = "embedded";
     double time_s = 0;
     ErrorOptions error;
@@ -55,12 +55,8 @@ std::string count(std::uint64_t n) {
 }
 
 void write_stats(const Statistics& s, const std::string& path) {
-    const std::string text = to_json(s);
-    if (path == "-") return print_out(text);
-    AtomicFile file(path);
-    file.write(text.data(), text.size());
-    file.finish();
-    file.commit();
+    if (path == "-") return print_out(to_json(s));
+    write_text_file(to_json(s), path);
 }
 
 std::vector<OutputFile> outputs_of(const RenderOptions& o) {
@@ -171,8 +167,8 @@ double time_to_render(const Scene& scene, const RenderOptions& o, const PictureF
 }
 
 RenderResult render_with_progress(const Scene& scene, const RenderOptions& o, double time_s,
-                                  const Snapshots::Write& write, ProgressPrinter& printer,
-                                  TevDisplay* display) {
+                                  const Snapshots::Write& write, PassFiles* passes,
+                                  ProgressPrinter& printer, TevDisplay* display) {
     Snapshots snapshots(write, printer);
     RenderSettings settings;
     settings.threads = o.scene.threads;
@@ -185,6 +181,7 @@ RenderResult render_with_progress(const Scene& scene, const RenderOptions& o, do
     ForecastPrinter forecasts(printer,
                               settings.target || o.time_s <= 0 ? settings.target : kUsualTarget);
     settings.on_error = [&](const ErrorPoint& p) { forecasts.show(p); };
+    if (passes) settings.on_pass = [=](RenderResult&& r) { passes->write(std::move(r)); };
     settings.cancel = &stop_at_next_tile();
     settings.progress = [&](const Progress& p) { printer.show(p); };
     settings.snapshot = &snapshot_wanted();
@@ -277,16 +274,23 @@ int run_render(RenderOptions options, const std::string& command) {
 
     ProgressPrinter printer(progress_style(options));
     const auto display = open_display(scene->film(), options, printer);
-    const auto write = [&](RenderResult& r) {
+    const auto describe = [&](RenderResult& r) {
+        r.stats.load_s = load_s;
         describe_picture(r.image, scene->hash(), r.stats, command, files.format);
+    };
+    std::optional<PassFiles> passes;
+    if (!options.passes.empty()) passes.emplace(options.passes, describe);
+    const auto write = [&](RenderResult& r) {
+        describe(r);
         WriteReport report = write_picture_files(r.image, files);
         if (r.deep && !names_film_file(options.deep))
             write_deep_file(r.image, *r.deep, options.deep,
                             write_options(files.format, options.scene.threads), report);
         return report;
     };
-    RenderResult result = render_with_progress(
-        *scene, options, time_to_render(*scene, options, files), write, printer, display.get());
+    RenderResult result =
+        render_with_progress(*scene, options, time_to_render(*scene, options, files), write,
+                             passes ? &*passes : nullptr, printer, display.get());
     Statistics& s = result.stats;
     s.load_s = load_s;
     if (!result.complete && s.samples == 0 && s.resumed_spp == 0) {
@@ -340,6 +344,9 @@ void add_render(Command app, CommandLine& line) {
                "Also a deep EXR: beauty apart by depth, for merging by depth; or the .tsf of "
                "-o, to keep depths in it for tessera merge --deep");
     o->out.add_to(sub);
+    sub.option("--passes", o->passes,
+               "Folder for the picture after each pass, with its statistics; not counted in any "
+               "time");
     sub.print_flag(
         "--list-aovs", [] { print_out(list_of_passes()); }, "List the passes that --aov takes");
     sub.option("--crypto-manifest", o->crypto_manifest,

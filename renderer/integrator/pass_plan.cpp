@@ -19,14 +19,14 @@ constexpr int kCareful = 16;  // a pass takes this part of what is there at leas
 int PassPlan::next(int done, double elapsed_s, int wanted) const {
     const int rest = spp_ - done;
     if (rest <= 0) return 0;
+    const bool close = close_ || wanted > 0;
     int end = 1;
-    while (end <= done) end *= wanted > 0 ? kCloseGrowth : kGrowth;
+    while (end <= done) end *= close ? kCloseGrowth : kGrowth;
     int count = end - done;
     if (wanted > 0)
         count = std::min(
             count, std::max(wanted - done, kReplicates * (done / kCareful / kReplicates + 1)));
-    if (time_s_ > 0)
-        count = std::min(whole(done, affordable(elapsed_s)), wanted > 0 ? count : rest);
+    if (time_s_ > 0) count = std::min(whole(done, affordable(elapsed_s)), close ? count : rest);
     return std::min(count, rest);
 }
 

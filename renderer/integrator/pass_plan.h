@@ -12,8 +12,9 @@ class PassPlan {
 public:
     static constexpr double kLate = 0.03;
 
-    /// time_s <= 0: spp alone decides.
-    PassPlan(int spp, double time_s) : spp_(spp), time_s_(time_s) {}
+    /// time_s <= 0: spp alone decides. Close: passes end at powers of two at least.
+    PassPlan(int spp, double time_s, bool close = false)
+        : spp_(spp), time_s_(time_s), close_(close) {}
 
     /// Samples of the next pass when `done` are there after so many seconds; 0: that is all.
     /// wanted: where the error is thought to be small enough (0: that is no matter); looked at more
@@ -28,6 +29,7 @@ private:
 
     int spp_;
     double time_s_;
+    bool close_;
     int taken_ = 0;
     double samples_ = 0, seconds_ = 0;  // of the latest passes
 };

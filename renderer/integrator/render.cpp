@@ -53,7 +53,7 @@ public:
         const int spp = scene_.settings().spp;
         int done = static_cast<int>(sample_range(film_).least);
         resumed_ = done;
-        PassPlan plan(spp, settings_.time_s);
+        PassPlan plan(spp, settings_.time_s, settings_.on_pass != nullptr);
         while (const int count = plan.next(done, seconds_since(start_), error_.samples_wanted())) {
             const Clock::time_point start = Clock::now();
             render_pass(done, done + count, spp);
@@ -61,6 +61,7 @@ public:
             done += count;
             plan.took(count, seconds_since(start));
             look_at_error(done);
+            if (settings_.on_pass) show_pass(done);
             if (error_.reached()) break;
         }
         save();
@@ -278,6 +279,15 @@ private:
         const bool news = error_.look(film_, workers_, done, resumed_s_ + seconds_since(start_),
                                       process_cpu_seconds() - cpu_start_);
         if (news && settings_.on_error) settings_.on_error(error_.curve().back());
+    }
+
+    // As if no time had gone by.
+    void show_pass(int done) {
+        const Clock::time_point begun = Clock::now();
+        const double cpu = process_cpu_seconds();
+        settings_.on_pass(finish(done, false));
+        cpu_start_ += process_cpu_seconds() - cpu;
+        start_ += Clock::now() - begun;
     }
 
     // within: a pass is not through.

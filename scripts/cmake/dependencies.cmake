@@ -60,3 +60,9 @@ tessera_pkg(tessera_xxhash libxxhash)
 
 add_library(tessera_pugixml INTERFACE)
 tessera_pkg(tessera_pugixml pugixml)
+
+# Plots as PNG; OpenImageIO's libraries load it anyway. Its -pthread would spoil the precompiled header.
+add_library(tessera_rsvg INTERFACE)
+pkg_check_modules(tessera_rsvg_pc REQUIRED librsvg-2.0)
+target_include_directories(tessera_rsvg SYSTEM INTERFACE ${tessera_rsvg_pc_INCLUDE_DIRS})
+target_link_libraries(tessera_rsvg INTERFACE ${tessera_rsvg_pc_LINK_LIBRARIES})

@@ -2,7 +2,7 @@ include(GNUInstallDirs)
 install(TARGETS tessera RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/tessera/scenes FILES_MATCHING
         PATTERN "*.toml" PATTERN "*.obj" PATTERN "*.mtl" PATTERN "*.py")
-install(FILES docs/scene.schema.json docs/stats.schema.json OPTIONAL DESTINATION ${CMAKE_INSTALL_DATADIR}/tessera)
+install(FILES docs/scene.schema.json docs/stats.schema.json docs/converge.schema.json OPTIONAL DESTINATION ${CMAKE_INSTALL_DATADIR}/tessera)
 install(FILES README.md CHANGELOG.md LICENSE OPTIONAL DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 set(CPACK_GENERATOR DEB)

@@ -53,7 +53,8 @@ class Docs(TesseraTest):
                     self.assertTrue((page.parent / link).exists())
 
     def test_render_options_are_all_documented(self):
-        pages = {"render": "command-line.md", "info": "command-line.md", "bench": "command-line.md", "compare": "compare.md"}
+        pages = {"render": "command-line.md", "info": "command-line.md", "bench": "command-line.md", "compare": "compare.md",
+                 "converge": "converge.md"}
         for command, page in pages.items():
             text = (SOURCE / "docs" / page).read_text()
             shown = self.expect(0, command, "--help").out.split("Examples:")[0]

@@ -94,3 +94,15 @@ TEST_CASE("pass plan: without a time passes grow fourfold up to the samples aske
     CHECK(plan.next(100, 0) == 0);
     CHECK(PassPlan(1 << 24, 0).next((1 << 24) - 1, 0) == 1);
 }
+
+TEST_CASE("pass plan: close passes end at powers of two, with a time too") {
+    PassPlan plan(100, 0, true);
+    CHECK(plan.next(0, 0) == 1);
+    CHECK(plan.next(1, 0) == 1);
+    CHECK(plan.next(2, 0) == 2);
+    CHECK(plan.next(32, 0) == 32);
+    CHECK(plan.next(64, 0) == 36);
+    PassPlan timed(1 << 20, 1e6, true);
+    timed.took(64, 1e-3);
+    CHECK(timed.next(64, 0) == 64);
+}
