@@ -34,6 +34,7 @@ struct ErrorEstimate {
     double epsilon = 0;                 // a hundredth of the squared mean of the picture
     PixelWindow tile;                   // where the rmse is largest
     Interval worst_tile;                // the rmse there
+    double calibration = 1;             // factor that is in squared errors (renderer/error)
     double largest_share = 0;           // of the squared error, in the one noisiest pixel
     std::vector<std::string> cautions;  // why something is not reliable
     std::vector<ErrorCause> causes;     // largest first; of what is not reliable, or if asked for

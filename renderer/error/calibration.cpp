@@ -1,5 +1,6 @@
 #include "renderer/error/calibration.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "renderer/error/interval.h"
@@ -7,9 +8,19 @@
 namespace tessera {
 namespace {
 
-// What the factor is where nothing else is known, and the standard deviation of its logarithm
-// between scenes (docs/error.md).
-constexpr double kUsual = 0.92, kUsualSpread = 0.4;
+// What is known before any probe is asked. If the error falls from quarters to halves as it does
+// from halves to the whole, the factor is the square of the one between the first two. How far that
+// is off, as a standard deviation of logarithms between scenes, and its limits (docs/error.md).
+constexpr double kDoubt = 0.3, kLeast = 0.2, kMost = 1.1;
+
+Calibration::Factor expected(const TileError::Halves& halves, double quarters) {
+    constexpr double doubt = kDoubt * kDoubt;
+    if (!(halves.error > 0) || !(quarters > 0)) return {1, doubt};
+    const double ratio = halves.error / quarters;
+    // A half's error has one degree of freedom: its variance is two thirds of its mean square.
+    const double spread = 2.0 / 3.0 * halves.squares / (halves.error * halves.error);
+    return {std::clamp(ratio * ratio, kLeast, kMost), doubt + 4 * spread};
+}
 
 // What a probe has of a channel.
 struct Seen {
@@ -40,18 +51,18 @@ public:
         e_ += expected, f_ += found;
         ee_ += expected * expected, ff_ += found * found, ef_ += expected * found;
     }
-    Calibration::Factor factor() const {
-        constexpr double prior = kUsualSpread * kUsualSpread;
-        if (!(e_ > 0) || !(f_ > 0)) return {kUsual, prior};
+    Calibration::Factor factor(const Calibration::Factor& before) const {
+        if (!(e_ > 0) || !(f_ > 0)) return before;
         const double ratio = f_ / e_;
         // Of the sum of found - ratio * expected.
         const double off = std::max(ff_ - 2 * ratio * ef_ + ratio * ratio * ee_, 0.0);
         const double probes = f_ * f_ / ff_;  // that make the sum
-        if (!(probes > 1.5)) return {kUsual, prior};
+        if (!(probes > 1.5)) return before;
         const double few = student(kQuantile, probes - 1) / kQuantile;
         const double spread = few * few * off / (f_ * f_) * probes / (probes - 1);
-        const double share = prior / (prior + spread);
-        return {std::exp(share * std::log(ratio) + (1 - share) * std::log(kUsual)), spread * share};
+        const double share = before.spread / (before.spread + spread);
+        return {std::exp(share * std::log(ratio) + (1 - share) * std::log(before.value)),
+                spread * share};
     }
 
 private:
@@ -60,7 +71,7 @@ private:
 
 }  // namespace
 
-Calibration calibrate(const ReplicateView& v, double epsilon) {
+Calibration calibrate(const ReplicateView& v, const TileError& all, double epsilon) {
     Calibration out;
     Ratio squared, relative;
     v.probes.grid.each_inside(v.window, [&](std::size_t cell, ProbeGrid::Pixel p) {
@@ -79,8 +90,8 @@ Calibration calibrate(const ReplicateView& v, double epsilon) {
         squared.add(expected, found);
         relative.add(expected_relative, found_relative);
     });
-    out.squared = squared.factor();
-    out.relative = relative.factor();
+    out.squared = squared.factor(expected(all.absolute_halves, all.absolute.error));
+    out.relative = relative.factor(expected(all.relative_halves, all.low.error));
     return out;
 }
 

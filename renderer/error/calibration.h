@@ -7,6 +7,7 @@
 // it says by what factor the replicates' errors, which every pixel has, are to be multiplied.
 
 #include "renderer/error/replicates.h"
+#include "renderer/error/tile_error.h"
 
 namespace tessera {
 
@@ -18,7 +19,7 @@ struct Calibration {
     int probes = 0;  // that it stands on
 };
 
-/// epsilon: of relative errors.
-Calibration calibrate(const ReplicateView& picture, double epsilon);
+/// all: of the picture, with the same epsilon of relative errors.
+Calibration calibrate(const ReplicateView& picture, const TileError& all, double epsilon);
 
 }  // namespace tessera

@@ -65,7 +65,6 @@ ErrorEstimate estimate_error(const ReplicateView& picture, Workers& workers) {
     out.asked = true;
     out.epsilon = 0.01 * mean * mean;
     const double epsilon = std::max(out.epsilon, 1e-30);  // of a black picture
-    const Calibration calibration = calibrate(picture, epsilon);
     workers.for_each(
         count, [&](int t) { tiles[t].error = tile_error(picture, tiles[t].window, epsilon); });
     TileError all;
@@ -73,10 +72,14 @@ ErrorEstimate estimate_error(const ReplicateView& picture, Workers& workers) {
         all.absolute.add(t.error.absolute);
         all.low.add(t.error.low);
         all.high.add(t.error.high);
+        all.absolute_halves.add(t.error.absolute_halves);
+        all.relative_halves.add(t.error.relative_halves);
         all.known &= t.error.known;
     }
     out.known = all.known && count > 0;
     if (!out.known) return out;
+    const Calibration calibration = calibrate(picture, all, epsilon);
+    out.calibration = calibration.squared.value;
     for (Tile& t : tiles)
         t.error.absolute.scale(calibration.squared.value, calibration.squared.spread);
     all.absolute.scale(calibration.squared.value, calibration.squared.spread);

@@ -65,6 +65,7 @@ struct Pair {
 
 struct Sixteen {
     Lane absolute, low, high;  // errors
+    Lane absolute_halves, relative_halves;
     // By match: sums over channels of products of differences.
     Lane absolute_off[3], relative_off[3];
 
@@ -81,6 +82,12 @@ struct Sixteen {
                 const Pair b(x[m[2]], x[m[3]], w[m[2]], w[m[3]]);
                 split += a.error / b.square(epsilon) + b.error / a.square(epsilon);
             }
+            const float first = w[0] + w[1], second = w[2] + w[3];
+            const float gap =
+                (w[0] * x[0] + w[1] * x[1]) * second - (w[2] * x[2] + w[3] * x[3]) * first;
+            const float halves = gap * gap / (first * second);
+            absolute_halves.of[i] += halves;
+            relative_halves.of[i] += halves / (mean * mean + epsilon);
             const float least = variance / (mean * mean + epsilon), most = split * (1.0f / 6.0f);
             const float weight = variance > 0.0f ? 0.5f * (least + most) / variance : 0.0f;
             absolute.of[i] += variance, low.of[i] += least, high.of[i] += most;
@@ -125,6 +132,14 @@ void add(ErrorSums& sums, const Lane& error, const Lane (&off)[3], const Lane& m
     }
 }
 
+void add(TileError::Halves& sums, const Lane& error) {
+    for (const float of : error.of) {
+        const double e = static_cast<double>(of) / kChannels;
+        sums.error += e;
+        sums.squares += e * e;
+    }
+}
+
 }  // namespace
 
 void ErrorSums::scale(double factor, double variance) noexcept {
@@ -155,6 +170,8 @@ TileError tile_error(const ReplicateView& v, const PixelWindow& part, double eps
             for (int c = 0; c < kChannels; ++c)
                 s.add_channel(pixels, c, static_cast<float>(epsilon));
             add(out.absolute, s.absolute, s.absolute_off, {}, kFloor);
+            add(out.absolute_halves, s.absolute_halves);
+            add(out.relative_halves, s.relative_halves);
             add(out.low, s.low, s.relative_off, s.half_bracket(), kRelativeFloor);
             add(out.high, s.high, s.relative_off, s.half_bracket(), kRelativeFloor);
         }

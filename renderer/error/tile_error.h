@@ -31,6 +31,13 @@ struct ErrorSums {
 /// denominator makes good to first order, and what is rarer than the replicates are many leaves
 /// them too high. Both are summed up; the truth lies between (relative_error()).
 struct TileError {
+    // Squared errors as both halves of the samples tell them, two runs each.
+    struct Halves {
+        double error = 0, squares = 0;  // sums over pixels
+
+        void add(const Halves& o) noexcept { error += o.error, squares += o.squares; }
+    };
+    Halves absolute_halves, relative_halves;
     ErrorSums absolute;
     ErrorSums low, high;  // relative: of both the same spread, with half their difference for what
                           // that leaves open

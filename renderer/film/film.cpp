@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "renderer/core/parallel.h"
-#include "renderer/error/calibration.h"
+#include "renderer/error/estimate.h"
 
 namespace tessera {
 namespace {
@@ -249,8 +249,10 @@ void Film::merge(const Film& other) {
 
 std::vector<Layer> Film::layers(Workers& workers) const {
     std::vector<Layer> out = outline();
-    const double calibration =
-        beauty_.has_replicates() ? calibrate(replicates(), 0).squared.value : 1;
+    const bool wanted = std::any_of(passes_.begin(), passes_.end(), [](const Pass& p) {
+        return p.source == PassSource::standard_error;
+    });
+    const double calibration = wanted ? estimate_error(replicates(), workers).calibration : 1.0;
     workers.for_each(static_cast<int>(out.size()), [&](int i) { make_room(out[i], window_); });
     workers.for_each(window_.height(),
                      [&](int row) { put_row(window_, window_.y0 + row, calibration, out); });

@@ -178,6 +178,7 @@ private:
     void arrive(int i, std::uint32_t depth) noexcept {
         const Vec3f d = ray_[i].d;
         SurfacePoint& s = surface_[i];
+        if (passes_) passes_->meet(i, s.material);
         if (!is_finite(s.p) || !is_finite(s.ng) || !is_finite(s.ns) || !(length2(s.ng) > 0.5f)) {
             invalid(InvalidCause::hit, i);
             return stop(i);
@@ -193,7 +194,6 @@ private:
         make_shade_input<F>(scene_, program, hit_[i], cone_width_[i], d, s, shade_in_[i]);
         if constexpr (F.textures) shade_in_[i].seed = seeds_[i];
         if (depth == 0) note_first_hit(i, s);
-        if (passes_) passes_->meet(i, s.material);
         if constexpr (kMedia<F>) {
             if (program && program->facts().glass && meet_glass(i, *program)) return;
         }
@@ -511,9 +511,9 @@ private:
         passes_->first(i).albedo = throughput_[i] * lobes_.albedo(i);
         if (depth != 0) return;
         if (passes_->wants_albedos()) passes_->albedos(i, lobes_.albedos(i));
-        if (!passes_->wants_ao()) return;
-        const bool open = is_open(job_, frame_, i, p_[i], p_error_[i], seeds_[i], counters_);
-        passes_->first(i).ao = open ? 1.0f : 0.0f;
+        if (passes_->wants_ao() &&
+            !is_open(job_, frame_, i, p_[i], p_error_[i], seeds_[i], counters_))
+            passes_->first(i).ao = 0.0f;
     }
 
     // What the light that was chosen will be to the passes, if nothing is in its way.
@@ -540,14 +540,12 @@ private:
     }
 
     void finish() noexcept {
-        for (LaneMask m = job_.lanes; m != 0; m &= m - 1) {
-            const int i = std::countr_zero(m);
+        each(job_.lanes, [&](int i) {
             PathSample& o = out_[i];
-            if (!is_finite(o.radiance) || min_component(o.radiance) < 0.0f) {
-                invalid(InvalidCause::radiance, i);
-                o.radiance = Color(0.0f);
-            }
-        }
+            if (is_finite(o.radiance) && !(min_component(o.radiance) < 0.0f)) return;
+            invalid(InvalidCause::radiance, i);
+            o.radiance = Color(0.0f);
+        });
     }
 
     const BlockJob& job_;
