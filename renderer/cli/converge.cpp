@@ -155,6 +155,8 @@ void add_converge(Command app, CommandLine& line) {
         .one_each();
     sub.option("--seeds", o->seeds, "Runs of each, by so many seeds: intervals (default 1)")
         .in(1, 1000);
+    sub.flag("--attribute", o->attribute,
+             "Say which paths, lights and materials make the error of each run");
     sub.option("--set", o->set, "KEY=VALUE of the scene file, for all runs (repeatable)")
         .one_each();
     sub.option("-r,--res", o->res, "Resolution WxH of all runs");

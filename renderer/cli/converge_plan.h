@@ -15,7 +15,7 @@ struct ConvergeOptions {
     std::optional<int> spp, reference_spp;
     double time_s = 0;
     int seeds = 1, threads = 0;
-    bool external = false, quiet = false;
+    bool external = false, quiet = false, attribute = false;
 };
 
 /// Words of a --vary: a key of the scene file and its values.

@@ -36,6 +36,14 @@ json beauty_of(const json& statistics) {
     return error.is_object() ? error.value("beauty", json()) : json();
 }
 
+std::vector<ErrorCause> causes_of(const json& list) {
+    std::vector<ErrorCause> out;
+    for (const json& c : list)
+        out.push_back({c.at("paths"), c.at("light"), c.at("seen"), c.at("through"), c.at("share"),
+                       c.at("remedy")});
+    return out;
+}
+
 // The last lines of what it said; without a word, its exit code.
 std::string reason(const ChildResult& child) {
     std::string text = child.err;
@@ -150,6 +158,7 @@ std::vector<std::string> render_words(const RunRequest& r, const std::string& na
     if (!r.res.empty()) words.insert(words.end(), {"--res", r.res});
     for (const std::string& s : r.set) words.insert(words.end(), {"--set", s});
     if (r.seed) words.insert(words.end(), {"--seed", std::to_string(*r.seed)});
+    if (r.attribute && r.passes) words.push_back("--error-causes");
     if (r.external) words.push_back("--allow-external-assets");
     return words;
 }
@@ -186,6 +195,7 @@ ConvergePoint read_point(const std::string& statistics, ConvergeRun& run) {
         p.rmse = interval_of(beauty.value("rmse", json()));
         p.relmse = interval_of(beauty.value("relmse", json()));
         run.cautions = beauty.value("cautions", std::vector<std::string>());
+        run.causes = causes_of(beauty.value("causes", json::array()));
         const json curve = beauty.value("curve", json::array());
         if (!curve.empty() && curve.back().value("spp", 0) == p.spp)
             p.cpu_s = curve.back().at("cpu");

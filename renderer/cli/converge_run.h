@@ -12,7 +12,8 @@ namespace tessera {
 
 struct RunRequest {
     std::string program;
-    bool passes = true;  // it knows --passes; otherwise it renders once for each point
+    bool attribute = false;  // say what makes the error, if it can
+    bool passes = true;      // it knows --passes; otherwise it renders once for each point
     std::string scene, res, folder;
     std::vector<std::string> set;
     std::optional<std::uint64_t> seed;

@@ -15,6 +15,7 @@
 #include "renderer/converge/summary.h"
 #include "renderer/converge/text.h"
 #include "renderer/core/log.h"
+#include "renderer/error/cause_text.h"
 
 namespace tessera {
 namespace {
@@ -145,6 +146,7 @@ void SceneRuns::run_series(const Combination& c, std::vector<Kept>& kept,
         RunRequest r;
         r.program = build.program;
         r.passes = passes_[c.build];
+        r.attribute = options_.attribute;
         r.scene = c.scene;
         r.res = options_.res;
         r.set = options_.set;
@@ -174,6 +176,7 @@ void SceneRuns::run_series(const Combination& c, std::vector<Kept>& kept,
             log_warning(name + ": " + run.failure);
         }
         log_info(fmt::format("run      {}: {}", name, said(run)));
+        if (!run.causes.empty()) log_info("cause    " + to_text(run.causes.front()));
         if (!outcome.files.empty()) keep_picture(run, outcome.files.back(), k);
         out_.runs.push_back(std::move(run));
         const bool first = std::none_of(kept.begin(), kept.end(), [&](const Kept& other) {

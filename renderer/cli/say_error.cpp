@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "renderer/core/log.h"
+#include "renderer/error/cause_text.h"
 
 namespace tessera {
 namespace {
@@ -29,15 +30,6 @@ std::string to_text(const ErrorEstimate& e) {
     std::string text = text_of("relMSE", e.relmse) + ", " + text_of("RMSE", e.rmse);
     for (const std::string& c : e.cautions) text += "; " + c;
     return text;
-}
-
-std::string to_text(const ErrorCause& c) {
-    const auto quoted = [](const char* before, const std::string& name) {
-        return name.empty() ? std::string() : fmt::format(" {} '{}'", before, name);
-    };
-    return fmt::format("{:.0f} % of the error: {}{}{}{}", 100 * c.share, c.paths,
-                       quoted("of light", c.light), quoted("by way of", c.through),
-                       quoted("on", c.seen));
 }
 
 std::string to_text(const ErrorTarget& t) {

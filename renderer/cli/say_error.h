@@ -11,9 +11,6 @@ namespace tessera {
 /// "relMSE 0.0123 (0.0118 to 0.0129), RMSE 0.041 (0.039 to 0.043)"; what is not reliable says so.
 std::string to_text(const ErrorEstimate& error);
 
-/// "61 % of the error: caustic of light 'bulb' by way of 'lens' on 'floor'"
-std::string to_text(const ErrorCause& cause);
-
 /// Logs the largest causes, and what helps against the first.
 void say_causes(const std::vector<ErrorCause>& causes);
 

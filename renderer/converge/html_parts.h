@@ -12,6 +12,8 @@ namespace tessera {
 std::string swatch(std::size_t colour);
 
 /// The numbers of a scene at the end of its runs; "" if there are none.
+/// Of the first run of each series; empty if nothing is known.
+std::string causes_table(const ConvergeScene& scene, const std::vector<SeriesSummary>& series);
 std::string results_table(const ConvergeScene& scene, const std::vector<SeriesSummary>& series);
 
 }  // namespace tessera

@@ -44,6 +44,7 @@ struct ConvergeRun {
     bool complete = false;
     std::string failure;  // "": none
     std::vector<std::string> cautions;
+    std::vector<ErrorCause> causes;    // at the end; by --attribute, or of what is unreliable
     std::vector<ConvergePoint> curve;  // of rising samples
     std::string file;                  // the last picture
     ShownPicture shown;                // of the first run of a series

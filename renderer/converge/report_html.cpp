@@ -165,8 +165,8 @@ std::string section(const ConvergeScene& scene, std::size_t number) {
                                r.seed, escaped(r.failure));
     for (const std::string& note : scene.notes)
         out += "<p class=\"soft\">" + escaped(note) + "</p>\n";
-    return out + results_table(scene, series) + plots(scene, series) + slider(scene, shown) +
-           sheet(shown) + "</section>\n";
+    return out + results_table(scene, series) + plots(scene, series) + causes_table(scene, series) +
+           slider(scene, shown) + sheet(shown) + "</section>\n";
 }
 
 std::string contents(const ConvergeReport& report) {

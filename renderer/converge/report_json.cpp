@@ -47,6 +47,18 @@ ordered_json point(const ConvergePoint& p) {
             {"error", truth(p.truth)}};
 }
 
+ordered_json causes(const std::vector<ErrorCause>& list) {
+    ordered_json out = ordered_json::array();
+    for (const ErrorCause& c : list)
+        out.push_back({{"paths", c.paths},
+                       {"light", c.light},
+                       {"seen", c.seen},
+                       {"through", c.through},
+                       {"share", number(c.share)},
+                       {"remedy", c.remedy}});
+    return out;
+}
+
 ordered_json run(const ConvergeRun& r) {
     ordered_json settings = ordered_json::object();
     for (const auto& [key, value] : r.settings) settings[key] = value;
@@ -65,6 +77,7 @@ ordered_json run(const ConvergeRun& r) {
             {"complete", r.complete},
             {"failure", text_or_null(r.failure)},
             {"cautions", r.cautions},
+            {"causes", causes(r.causes)},
             {"picture", text_or_null(r.file)},
             {"curve", curve}};
 }

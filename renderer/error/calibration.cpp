@@ -11,7 +11,7 @@ namespace {
 // What is known before any probe is asked. If the error falls from quarters to halves as it does
 // from halves to the whole, the factor is the square of the one between the first two. How far that
 // is off, as a standard deviation of logarithms between scenes, and its limits (docs/error.md).
-constexpr double kDoubt = 0.3, kLeast = 0.2, kMost = 1.1;
+constexpr double kDoubt = 0.4, kLeast = 0.2, kMost = 1.1;
 
 Calibration::Factor expected(const TileError::Halves& halves, double quarters) {
     constexpr double doubt = kDoubt * kDoubt;

@@ -65,7 +65,11 @@ public:
             if (error_.reached()) break;
         }
         save();
-        return finish(done, stopped_);
+        RenderResult r = finish(done, stopped_);
+        ErrorEstimate& error = r.stats.error;
+        if (!stopped_ && causes_wanted(error))
+            error.causes = find_causes(scene_, film_, settings_.first_sample, workers_);
+        return r;
     }
 
 private:
@@ -319,8 +323,6 @@ private:
         s.checkpoint_every_s = settings_.checkpoint.empty() ? 0 : checkpoints_.every_s();
         s.render_s = seconds_since(start_);
         s.error = error_.latest();
-        if (!within && causes_wanted(s.error))
-            s.error.causes = find_causes(scene_, film_, settings_.first_sample, workers_);
         s.error_curve = error_.curve();
         s.error_target = settings_.target;
         s.error_reached = error_.reached();

@@ -134,6 +134,17 @@ class Curves(Converge):
         self.assertFalse((self.folder / "out/plots/scene-flip-wall.svg").exists())
 
 
+    def test_it_says_what_makes_the_error(self):
+        self.converge("--spp", "32", "--vary", "max_depth=0,4", "--attribute")
+        for run in self.report()["scenes"][0]["runs"]:
+            shares = [cause["share"] for cause in run["causes"]]
+            self.assertEqual(shares, sorted(shares, reverse=True))
+            self.assertGreater(shares[0], 0.1)
+            self.assertTrue(run["causes"][0]["remedy"])
+            self.assertEqual("indirect light" in [c["paths"] for c in run["causes"]], run["settings"]["max_depth"] == "4")
+        self.assertIn("What makes the error", (self.folder / "out/report.html").read_text())
+
+
 class Passes(Converge):
     """render --passes"""
 

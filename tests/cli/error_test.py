@@ -57,6 +57,19 @@ class Errors(TesseraTest):
         self.assertAlmostEqual(self.number("a.exr", "relmse"), beauty["relmse"]["value"], places=6)
         self.assertAlmostEqual(self.number("a.exr", "rmseHigh"), beauty["rmse"]["high"], places=6)
 
+    def test_its_causes_are_told_when_asked_for_or_when_it_is_unreliable(self):
+        run, statistics = self.statistics("--spp", "64", "--error-causes")
+        causes = statistics["error"]["beauty"]["causes"]
+        self.assertIn(causes[0]["light"], ("environment", ""))
+        self.assertAlmostEqual(1, sum(c["share"] for c in causes), places=4)  # no more than eight
+        self.assertRegex(run.err, r"cause    [0-9]+ % of the error: ")
+        self.assertIn("remedy   " + causes[0]["remedy"], run.err)
+        run, statistics = self.statistics("--spp", "64")
+        estimate = statistics["error"]["beauty"]
+        reliable = estimate["rmse"]["reliable"] and estimate["relmse"]["reliable"]
+        self.assertEqual(reliable, estimate["causes"] == [])
+        self.expect(USAGE, "render", "a.toml", "-o", "a.exr", "--error-causes", "--no-error-estimate")
+
     def test_it_can_be_left_out_and_the_picture_is_the_same(self):
         _, with_it = self.statistics("--float")
         first = Exr(self.folder / "a.exr")
