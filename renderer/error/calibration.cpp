@@ -14,7 +14,7 @@ namespace {
 constexpr double kDoubt = 0.4, kLeast = 0.2, kMost = 1.1;
 
 Calibration::Factor expected(const TileError::Halves& halves, double quarters) {
-    constexpr double doubt = kDoubt * kDoubt;
+    const double doubt = kDoubt * kDoubt;
     if (!(halves.error > 0) || !(quarters > 0)) return {1, doubt};
     const double ratio = halves.error / quarters;
     // A half's error has one degree of freedom: its variance is two thirds of its mean square.

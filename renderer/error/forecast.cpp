@@ -6,7 +6,7 @@
 namespace tessera {
 namespace {
 
-constexpr double kSlope = 1.0;  // of independent samples: minus the exponent of squared errors
+constexpr double kSlope = 1.1;        // minus the exponent of squared errors: that of most pictures
 constexpr double kSlopeSpread = 0.1;  // how far pictures are from it
 constexpr double kQuantile = 1.96;
 // Intervals of relative errors narrow with this power of the samples, for the truth is known

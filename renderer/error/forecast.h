@@ -13,8 +13,8 @@ const Interval& of_target(const ErrorPoint& point, const ErrorTarget& target);
 /// Whether the error is reliably no more than the target.
 bool reached(const ErrorPoint& point, const ErrorTarget& target);
 
-/// From the latest point on a power of the samples, whose exponent is -1 for squared errors unless
-/// the curve says otherwise, and seconds in proportion to samples, as many as lately.
+/// From the latest point on a power of the samples, whose exponent is -1.1 for squared errors
+/// unless the curve says otherwise, and seconds in proportion to samples, as many as lately.
 ErrorForecast forecast(const std::vector<ErrorPoint>& curve, const ErrorTarget& target);
 
 }  // namespace tessera

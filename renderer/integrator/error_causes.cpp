@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <tuple>
 
 #include "renderer/core/parallel.h"
 #include "renderer/integrator/block.h"
@@ -19,7 +20,9 @@ constexpr std::size_t kListed = 8;
 struct Key {
     std::uint16_t pass;
     int seen, last;
-    auto operator<=>(const Key&) const = default;
+    bool operator<(const Key& o) const {
+        return std::tie(pass, seen, last) < std::tie(o.pass, o.seen, o.last);
+    }
 };
 
 // By key: sums over samples of a part of the light, and of that times the whole.
