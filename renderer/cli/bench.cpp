@@ -23,7 +23,7 @@ double median(std::vector<double> v) {
 struct BenchOptions {
     SceneOptions scene;
     CoverageOptions coverage;
-    bool replay = false;
+    bool replay = false, no_estimate = false;
     int repeats = 5;
 };
 
@@ -33,6 +33,7 @@ int run_bench(const BenchOptions& o) {
     RenderSettings settings;
     settings.threads = o.scene.threads;
     settings.tile = o.scene.tile;
+    settings.error_estimate = !o.no_estimate;
     std::vector<double> render_s, replay_s, ratio, cpu_ratio;
     Statistics stats;
     render(*scene, settings);  // warm
@@ -85,6 +86,7 @@ void add_bench(Command app, CommandLine& line) {
     o->scene.add_to(sub);
     sub.flag("--replay", o->replay,
              "Also time Embree alone on the very same rays: the traversal ratio");
+    sub.flag("--no-error-estimate", o->no_estimate, "Without what tells the error");
     sub.option("--coverage", o->coverage.seeds,
                "Instead: renders by so many seeds, and how often the intervals of their errors "
                "hold the true ones")

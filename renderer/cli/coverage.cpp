@@ -124,6 +124,13 @@ int run_coverage(const SceneOptions& o, const CoverageOptions& c) {
         spp = r.stats.spp;
     }
     const ErrorTarget target{true, median(errors)};
+    print_out(fmt::format("scene       {}, {} spp, {} seeds, reference {} spp\n", o.scene, spp,
+                          c.seeds, c.reference_spp));
+    print_out(fmt::format("true relMSE {:.3g} (median)\n", target.value));
+    print_out(
+        fmt::format("            reliable, held, estimated over true (median)\nrelMSE      "
+                    "{}\nRMSE        {}\nworst tile  {}\n",
+                    relmse.text(), rmse.text(), worst.text()));
     int claimed = 0, wrong = 0;
     for (int k = 0; k < c.seeds; ++k) {
         const Rendered r =
@@ -132,13 +139,6 @@ int run_coverage(const SceneOptions& o, const CoverageOptions& c) {
         ++claimed;
         wrong += true_error(r.picture, reference.picture).relmse > kWrong * target.value;
     }
-    print_out(fmt::format("scene       {}, {} spp, {} seeds, reference {} spp\n", o.scene, spp,
-                          c.seeds, c.reference_spp));
-    print_out(fmt::format("true relMSE {:.3g} (median)\n", target.value));
-    print_out(
-        fmt::format("            reliable, held, estimated over true (median)\nrelMSE      "
-                    "{}\nRMSE        {}\nworst tile  {}\n",
-                    relmse.text(), rmse.text(), worst.text()));
     print_out(fmt::format("target      {} of {} claim relMSE {:.3g}, {} wrong by more than half\n",
                           claimed, c.seeds, target.value, wrong));
     return 0;

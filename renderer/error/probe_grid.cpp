@@ -14,8 +14,9 @@ constexpr std::uint64_t kPlaces = 0x9b1f3c5d7e2a4860u, kScrambles = 0x5851f42d4c
 ProbeGrid::ProbeGrid(const PixelWindow& w, std::uint64_t seed)
     : seed_(seed), first_x_(floor_div(w.x0, kWidth)), first_y_(floor_div(w.y0, kHeight)) {
     if (w.x0 >= w.x1 || w.y0 >= w.y1) return;
-    across_ = static_cast<std::size_t>(floor_div(w.x1 - 1, kWidth) - first_x_ + 1);
-    down_ = static_cast<std::size_t>(floor_div(w.y1 - 1, kHeight) - first_y_ + 1);
+    const int last_x = floor_div(w.x1 - 1, kWidth), last_y = floor_div(w.y1 - 1, kHeight);
+    across_ = static_cast<std::size_t>(last_x - first_x_) + 1;
+    down_ = static_cast<std::size_t>(last_y - first_y_) + 1;
 }
 
 ProbeGrid::Pixel ProbeGrid::probe(std::size_t cell) const noexcept {
