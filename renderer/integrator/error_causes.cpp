@@ -95,7 +95,8 @@ class Tracer {
 public:
     Tracer(const Scene& scene, const Film& film, int first_sample)
         : scene_(scene),
-          film_(film),
+          window_(film.window()),
+          counts_(film.replicates().counts),
           first_sample_(static_cast<std::uint32_t>(first_sample)),
           paths_(kinds_by_light(scene)),
           filter_(scene.film().filter, scene.film().filter_width_px),
@@ -114,7 +115,7 @@ public:
         job.passes = &passes;
         std::uint32_t most = 0;
         for (std::size_t i = 0; i < pixels.size(); ++i) {
-            const PixelWindow& w = film_.window();
+            const PixelWindow& w = window_;
             const int width = w.width(), pixel = static_cast<int>(pixels[i].first);
             aim_lane(job, static_cast<int>(i), w.x0 + pixel % width, w.y0 + pixel / width,
                      scene_.settings().seed);
@@ -152,12 +153,11 @@ public:
     }
 
 private:
-    std::uint32_t count(std::size_t pixel) const {
-        return film_.replicates().counts[pixel].total();
-    }
+    std::uint32_t count(std::size_t pixel) const { return counts_[pixel].total(); }
 
     const Scene& scene_;
-    const Film& film_;
+    PixelWindow window_;
+    std::span<const PixelCounts> counts_;
     std::uint32_t first_sample_;
     LightPaths paths_;
     FilterSampler filter_;
